@@ -1,0 +1,1 @@
+"""What the machine is: the cards of the cage, in Amaranth."""

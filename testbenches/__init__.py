@@ -1,0 +1,1 @@
+"""Simulators, drivers, monitors, comparison, reports and the command line."""
