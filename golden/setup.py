@@ -11,6 +11,8 @@ Widths a machine needs, b the display list's coordinate bits, s its sub-pixel bi
     edge remainder   ``edge_remainder_bits``   b, unsigned; remainder + step needs one more
     depth word       ``depth_word_bits``       depth bits + guard + fraction bits
     colour word      ``color_word_bits``       8 + guard + fraction bits
+
+The guard is for the highest resolution, at whatever resolution the machine draws.
 """
 
 from __future__ import annotations
@@ -50,12 +52,12 @@ def edge_remainder_bits(coordinate_bits: int) -> int:
 
 
 def depth_guard_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
-    """Guard bits of carried depth on a machine of ``width`` x ``height`` pixels."""
+    """Guard bits of carried depth on a machine built for ``width`` x ``height`` pixels."""
     return fixed.guard_bits(depth_bits, fraction_bits, width + height - 2)
 
 
 def color_guard_bits(fraction_bits: int, width: int, height: int) -> int:
-    """Guard bits of a carried colour channel on ``width`` x ``height`` pixels."""
+    """Guard bits of a carried channel on a machine built for ``width`` x ``height`` pixels."""
     return fixed.guard_bits(COLOR_BITS, fraction_bits, width + height - 2)
 
 
@@ -286,7 +288,9 @@ def prepare(
     top, bottom = boxes.top, boxes.bottom
 
     solver = _PlaneSolver(boxes, grid, fraction_bits)
-    screen = grid.width, grid.height
+    # A machine is built for the highest resolution; one that lost memory units
+    # draws fewer pixels in words as wide.
+    screen = display_list.width, display_list.height
     word_bits = depth_word_bits(display_list.depth_bits, fraction_bits, *screen)
     color: tuple[Planes, Planes, Planes] | None = None
     flat_color: NDArray[np.uint8] | None = None
