@@ -1,0 +1,240 @@
+"""The reference picture: the mathematics of the picture contract, in integers.
+
+A pixel's winner is the least (depth, primitive) of the fragments that fall on
+it; depth and colour are the planes through the vertices at the pixel centre,
+rounded half up.  Nothing is approximated, for any display list.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .coverage import FRAGMENT_LIMIT, ROW_LIMIT, Spans, Triangles, spans
+from .depth_buffer import DepthBuffer
+from .display_list import DisplayList
+from .errors import InputError
+from .grid import Grid
+from .picture import Picture
+
+Int64 = NDArray[np.int64]
+Shading = Literal["flat", "gouraud"]
+
+#: Where a depth plane overflows 64 bits, vertex depths are split here.
+_HALF_DEPTH_BITS = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Fragments:
+    """Pixels of primitives, in drawing order: primitive, then row, then column.
+
+    ``primitive`` ``x`` ``y`` int32 (n,), ``depth`` int64 (n,), ``color`` uint8 (n, 3)
+    """
+
+    primitive: NDArray[np.int32]
+    x: NDArray[np.int32]
+    y: NDArray[np.int32]
+    depth: Int64
+    color: NDArray[np.uint8]
+
+    def __len__(self) -> int:
+        return len(self.primitive)
+
+
+class _Plane:
+    """The plane through one value per vertex, times D, the doubled area; (n,) each.
+
+    ``value`` is the numerator at the triangle's first column and row plus
+    floor(D/2), so that dividing by D rounds half up.  All of it is modulo 2**64:
+    away from the triangle a numerator may be huge, but at a covered pixel it is
+    between 0 and D times the largest vertex value, and if that fits, sums and
+    products modulo 2**64 arrive at it whatever happened on the way.
+    """
+
+    def __init__(self, triangles: Triangles, values: Int64) -> None:
+        grid = triangles.grid
+        x, y = triangles.x.astype(np.int64), triangles.y.astype(np.int64)
+        sign = np.sign(triangles.double_area)
+        first, second, third = values.T
+        rise1, rise2 = (second - first) * sign, (third - first) * sign
+        slope_x = rise1 * (y[2] - y[0]) - rise2 * (y[1] - y[0])
+        slope_y = rise2 * (x[1] - x[0]) - rise1 * (x[2] - x[0])
+        area = abs(triangles.double_area)
+        self.value = first * area + area // 2
+        self.value += slope_x * (triangles.left * grid.unit_x + grid.unit_x // 2 - x[0])
+        self.value += slope_y * (triangles.top * grid.unit_y + grid.unit_y // 2 - y[0])
+        self.step_x = slope_x * grid.unit_x
+        self.step_y = slope_y * grid.unit_y
+
+    def at(self, triangle: Int64, right: Int64, down: Int64) -> Int64:
+        """The numerators ``right`` and ``down`` pixels from the first column and row."""
+        result = self.value.take(triangle)
+        result += self.step_x.take(triangle) * right
+        result += self.step_y.take(triangle) * down
+        return result
+
+    def along(self, runs: Spans, right: Int64, down: Int64, span: Int64, column: Int64) -> Int64:
+        """The numerators of every fragment of ``runs``, which start at (right, down)."""
+        result = self.at(runs.triangle, right, down).take(span)
+        result += self.step_x.take(runs.triangle).take(span) * column
+        return result
+
+
+class _Depth:
+    """Depth of every fragment, exact for every triangle."""
+
+    def __init__(self, display_list: DisplayList, triangles: Triangles) -> None:
+        self._triangles = triangles
+        self._area = abs(triangles.double_area)
+        depth = display_list.depth.take(triangles.primitive, axis=0)
+        # One plane will do where D * (depth + 1), which bounds every covered
+        # pixel's numerator plus floor(D/2), stays below 2**63.  Tested without overflow.
+        limit = np.iinfo(np.int64).max // self._area
+        self.whole = bool((depth.max(axis=1, initial=0) < limit).all())
+        if self.whole:
+            self._high = _Plane(triangles, depth)
+        else:
+            # depth = high * 2**16 + low, and planes are linear in the vertex
+            # values.  At a covered pixel each half's numerator is from 0 to
+            # D * (2**16 - 1) < 2**60, since D <= 2**44 in a guard band of 22 bits.
+            self._high = _Plane(triangles, depth >> _HALF_DEPTH_BITS)
+            self._low = _Plane(triangles, depth & ((1 << _HALF_DEPTH_BITS) - 1))
+
+    def of(self, runs: Spans, span: Int64, column: Int64) -> Int64:
+        """Depth of every fragment of ``runs``, from ``runs.expand()``."""
+        triangles = self._triangles
+        right = runs.first - triangles.left.take(runs.triangle)
+        down = runs.row - triangles.top.take(runs.triangle)
+        area = self._area.take(runs.triangle).take(span)
+        high = self._high.along(runs, right, down, span, column)
+        if self.whole:
+            high //= area
+            return high
+        low = self._low.along(runs, right, down, span, column)
+        # Both numerators carry floor(D/2); it must count once, with the low half.
+        high -= area // 2
+        # floor((high * 2**16 + low) / D) with high = quotient * D + rest is
+        # quotient * 2**16 + floor((rest * 2**16 + low) / D): rest * 2**16 < 2**60.
+        quotient, rest = np.divmod(high, area)
+        return np.asarray((quotient << _HALF_DEPTH_BITS)
+                          + ((rest << _HALF_DEPTH_BITS) + low) // area)  # fmt: skip
+
+
+def _colors(
+    display_list: DisplayList,
+    triangles: Triangles,
+    shading: Shading,
+    triangle: Int64,
+    x: Int64,
+    y: Int64,
+) -> NDArray[np.uint8]:
+    """uint8 (n, 3): the colour of ``triangle`` (a number in ``triangles``) at pixel (x, y)."""
+    if shading == "flat":
+        return display_list.color[:, 0].take(triangles.primitive.take(triangle), axis=0)
+    color = np.empty((len(triangle), 3), np.uint8)
+    vertex_color = display_list.color.take(triangles.primitive, axis=0)
+    area = abs(triangles.double_area).take(triangle)
+    right = x - triangles.left.take(triangle)
+    down = y - triangles.top.take(triangle)
+    for channel in range(3):
+        # At covered pixels at most 255 * D + D/2 < 2**53.
+        plane = _Plane(triangles, vertex_color[:, :, channel].astype(np.int64))
+        color[:, channel] = plane.at(triangle, right, down) // area
+    return color
+
+
+def shading_of(display_list: DisplayList, shading: Shading | None) -> Shading:
+    """``shading`` itself, or by default the cheapest that draws the list right."""
+    if shading is None:
+        return "flat" if display_list.flat else "gouraud"
+    return shading
+
+
+def draw(
+    display_list: DisplayList,
+    *,
+    shading: Shading | None = None,
+    x_shift: int = 0,
+    y_shift: int = 0,
+    fragment_limit: int = FRAGMENT_LIMIT,
+    row_limit: int = ROW_LIMIT,
+) -> Picture:
+    """The picture of ``display_list`` at the resolution ``Grid.of`` gives.
+
+    ``shading`` "flat" takes each triangle's first vertex colour; the default
+    interpolates unless every triangle has one colour.  The limits bound the
+    working set and do not change the picture.
+    """
+    shading = shading_of(display_list, shading)
+    grid = Grid.of(display_list, x_shift, y_shift)
+    triangles = Triangles.of(display_list, grid)
+    depth = _Depth(display_list, triangles)
+    buffer = DepthBuffer(grid)
+    for rows in spans(triangles, row_limit):
+        for runs in rows.chunks(fragment_limit):
+            span, column = runs.expand()
+            buffer.add(runs, span, column, depth.of(runs, span, column))
+    visible = buffer.visible()
+    color = _colors(display_list, triangles, shading, visible.triangle, visible.x, visible.y)
+    return buffer.picture(display_list, triangles, visible, color)
+
+
+def fragments(
+    display_list: DisplayList,
+    *,
+    shading: Shading | None = None,
+    x_shift: int = 0,
+    y_shift: int = 0,
+    pixel: tuple[int, int] | None = None,
+) -> Fragments:
+    """Every fragment of the list in drawing order, hidden ones too.
+
+    With ``pixel`` (x, y) only those that fell on it.  ``InputError`` for a
+    pixel outside the picture.
+    """
+    shading = shading_of(display_list, shading)
+    grid = Grid.of(display_list, x_shift, y_shift)
+    if pixel is not None and not (0 <= pixel[0] < grid.width and 0 <= pixel[1] < grid.height):
+        raise InputError(f"pixel: {pixel} is outside the picture of {grid.width}x{grid.height}")
+    triangles = Triangles.of(display_list, grid)
+    depth = _Depth(display_list, triangles)
+    parts: list[Fragments] = []
+    for rows in spans(triangles):
+        wanted = rows if pixel is None else rows.at(*pixel)
+        for runs in wanted.chunks(FRAGMENT_LIMIT):
+            span, column = runs.expand()
+            triangle = runs.triangle.take(span)
+            x, y = runs.first.take(span) + column, runs.row.take(span)
+            parts.append(Fragments(
+                primitive=triangles.primitive.take(triangle).astype(np.int32),
+                x=x.astype(np.int32),
+                y=y.astype(np.int32),
+                depth=depth.of(runs, span, column),
+                color=_colors(display_list, triangles, shading, triangle, x, y),
+            ))  # fmt: skip
+    if not parts:
+        none = np.zeros(0, np.int32)
+        return Fragments(none, none, none, np.zeros(0, np.int64), np.zeros((0, 3), np.uint8))
+    return Fragments(*(
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("primitive", "x", "y", "depth", "color")
+    ))  # fmt: skip
+
+
+def depth_complexity(
+    display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0
+) -> NDArray[np.int32]:
+    """int32 (height, width): how many fragments fell on each pixel."""
+    grid = Grid.of(display_list, x_shift, y_shift)
+    # One more where a span begins and one less where it has ended, summed along
+    # the row; the extra column takes the ends of spans that reach the edge.
+    change = np.zeros((grid.height, grid.width + 1), np.int32)
+    size = change.size
+    for runs in spans(Triangles.of(display_list, grid)):
+        begin = runs.row * (grid.width + 1) + runs.first
+        change.reshape(-1)[:] += np.bincount(begin, minlength=size).astype(np.int32)
+        change.reshape(-1)[:] -= np.bincount(begin + runs.length, minlength=size).astype(np.int32)
+    return np.cumsum(change[:, :-1], axis=1, dtype=np.int32)
