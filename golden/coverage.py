@@ -109,7 +109,7 @@ def _first_centre(coordinate: Integers, unit: int, limit: int) -> Integers:
     ceil((c - unit/2) / unit) = floor((c + unit/2 - 1) / unit), a shift.
     """
     shift = unit.bit_length() - 1
-    return np.clip((coordinate + (unit // 2 - 1)) >> shift, 0, limit)
+    return np.asarray(np.clip((coordinate + (unit // 2 - 1)) >> shift, 0, limit))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,6 @@ rounded half up.  Nothing is approximated, for any display list.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +18,9 @@ from .display_list import DisplayList
 from .errors import InputError
 from .grid import Grid
 from .picture import Picture
+from .shading import Shading, shading_for
 
 Int64 = NDArray[np.int64]
-Shading = Literal["flat", "gouraud"]
 
 #: Where a depth plane overflows 64 bits, vertex depths are split here.
 _HALF_DEPTH_BITS = 16
@@ -44,6 +43,25 @@ class Fragments:
         return len(self.primitive)
 
 
+class _Geometry:
+    """What every plane of a triangle shares; int64 (n,) each.
+
+    The second and third vertex from the first, mirrored where they run
+    anticlockwise; the centre of the first column and row from the first vertex.
+    """
+
+    def __init__(self, triangles: Triangles) -> None:
+        grid = triangles.grid
+        sign = np.sign(triangles.double_area)
+        x, y = triangles.x, triangles.y
+        self.x1, self.x2 = (sign * (x[vertex] - x[0]) for vertex in (1, 2))
+        self.y1, self.y2 = (sign * (y[vertex] - y[0]) for vertex in (1, 2))
+        self.right = (triangles.left * grid.unit_x + grid.unit_x // 2 - x[0]).astype(np.int64)
+        self.down = (triangles.top * grid.unit_y + grid.unit_y // 2 - y[0]).astype(np.int64)
+        self.area = abs(triangles.double_area)
+        self.triangles = triangles
+
+
 class _Plane:
     """The plane through one value per vertex, times D, the doubled area; (n,) each.
 
@@ -54,24 +72,20 @@ class _Plane:
     products modulo 2**64 arrive at it whatever happened on the way.
     """
 
-    def __init__(self, triangles: Triangles, values: Int64) -> None:
-        grid = triangles.grid
-        x, y = triangles.x.astype(np.int64), triangles.y.astype(np.int64)
-        sign = np.sign(triangles.double_area)
+    def __init__(self, geometry: _Geometry, values: Int64) -> None:
         first, second, third = values.T
-        rise1, rise2 = (second - first) * sign, (third - first) * sign
-        slope_x = rise1 * (y[2] - y[0]) - rise2 * (y[1] - y[0])
-        slope_y = rise2 * (x[1] - x[0]) - rise1 * (x[2] - x[0])
-        area = abs(triangles.double_area)
-        self.value = first * area + area // 2
-        self.value += slope_x * (triangles.left * grid.unit_x + grid.unit_x // 2 - x[0])
-        self.value += slope_y * (triangles.top * grid.unit_y + grid.unit_y // 2 - y[0])
-        self.step_x = slope_x * grid.unit_x
-        self.step_y = slope_y * grid.unit_y
+        rise1, rise2 = second - first, third - first
+        slope_x = rise1 * geometry.y2 - rise2 * geometry.y1
+        slope_y = rise2 * geometry.x1 - rise1 * geometry.x2
+        self.value = first * geometry.area + geometry.area // 2
+        self.value += slope_x * geometry.right
+        self.value += slope_y * geometry.down
+        self.step_x = slope_x * geometry.triangles.grid.unit_x
+        self.step_y = slope_y * geometry.triangles.grid.unit_y
 
     def at(self, triangle: Int64, right: Int64, down: Int64) -> Int64:
         """The numerators ``right`` and ``down`` pixels from the first column and row."""
-        result = self.value.take(triangle)
+        result: Int64 = self.value.take(triangle)
         result += self.step_x.take(triangle) * right
         result += self.step_y.take(triangle) * down
         return result
@@ -87,21 +101,22 @@ class _Depth:
     """Depth of every fragment, exact for every triangle."""
 
     def __init__(self, display_list: DisplayList, triangles: Triangles) -> None:
+        geometry = _Geometry(triangles)
         self._triangles = triangles
-        self._area = abs(triangles.double_area)
+        self._area = geometry.area
         depth = display_list.depth.take(triangles.primitive, axis=0)
         # One plane will do where D * (depth + 1), which bounds every covered
         # pixel's numerator plus floor(D/2), stays below 2**63.  Tested without overflow.
         limit = np.iinfo(np.int64).max // self._area
         self.whole = bool((depth.max(axis=1, initial=0) < limit).all())
         if self.whole:
-            self._high = _Plane(triangles, depth)
+            self._high = _Plane(geometry, depth)
         else:
             # depth = high * 2**16 + low, and planes are linear in the vertex
             # values.  At a covered pixel each half's numerator is from 0 to
             # D * (2**16 - 1) < 2**60, since D <= 2**44 in a guard band of 22 bits.
-            self._high = _Plane(triangles, depth >> _HALF_DEPTH_BITS)
-            self._low = _Plane(triangles, depth & ((1 << _HALF_DEPTH_BITS) - 1))
+            self._high = _Plane(geometry, depth >> _HALF_DEPTH_BITS)
+            self._low = _Plane(geometry, depth & ((1 << _HALF_DEPTH_BITS) - 1))
 
     def of(self, runs: Spans, span: Int64, column: Int64) -> Int64:
         """Depth of every fragment of ``runs``, from ``runs.expand()``."""
@@ -136,21 +151,15 @@ def _colors(
         return display_list.color[:, 0].take(triangles.primitive.take(triangle), axis=0)
     color = np.empty((len(triangle), 3), np.uint8)
     vertex_color = display_list.color.take(triangles.primitive, axis=0)
-    area = abs(triangles.double_area).take(triangle)
+    geometry = _Geometry(triangles)
+    area = geometry.area.take(triangle)
     right = x - triangles.left.take(triangle)
     down = y - triangles.top.take(triangle)
     for channel in range(3):
         # At covered pixels at most 255 * D + D/2 < 2**53.
-        plane = _Plane(triangles, vertex_color[:, :, channel].astype(np.int64))
+        plane = _Plane(geometry, vertex_color[:, :, channel].astype(np.int64))
         color[:, channel] = plane.at(triangle, right, down) // area
     return color
-
-
-def shading_of(display_list: DisplayList, shading: Shading | None) -> Shading:
-    """``shading`` itself, or by default the cheapest that draws the list right."""
-    if shading is None:
-        return "flat" if display_list.flat else "gouraud"
-    return shading
 
 
 def draw(
@@ -168,7 +177,7 @@ def draw(
     interpolates unless every triangle has one colour.  The limits bound the
     working set and do not change the picture.
     """
-    shading = shading_of(display_list, shading)
+    shading = shading_for(display_list, shading)
     grid = Grid.of(display_list, x_shift, y_shift)
     triangles = Triangles.of(display_list, grid)
     depth = _Depth(display_list, triangles)
@@ -195,7 +204,7 @@ def fragments(
     With ``pixel`` (x, y) only those that fell on it.  ``InputError`` for a
     pixel outside the picture.
     """
-    shading = shading_of(display_list, shading)
+    shading = shading_for(display_list, shading)
     grid = Grid.of(display_list, x_shift, y_shift)
     if pixel is not None and not (0 <= pixel[0] < grid.width and 0 <= pixel[1] < grid.height):
         raise InputError(f"pixel: {pixel} is outside the picture of {grid.width}x{grid.height}")

@@ -18,7 +18,7 @@ The guard is for the highest resolution, at whatever resolution the machine draw
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 from . import fixed
 from .display_list import DisplayList
 from .grid import Grid
+from .shading import Shading, shading_for
 
-Shading = Literal["flat", "gouraud"]
 Int64 = NDArray[np.int64]
 
 COLOR_BITS = 8
@@ -276,7 +276,7 @@ def prepare(
     """Set up every triangle that may cover a pixel centre of the machine's grid.
 
     Triangles without area, or whose box holds no pixel centre, are left out.
-    Raises ``InputError`` for fraction bits or shifts out of range.
+    Raises ``InputError`` for fraction bits or shifts out of range, or unknown shading.
     """
     fixed.check_fraction_bits(fraction_bits)
     grid = Grid.of(display_list, x_shift, y_shift)
@@ -295,17 +295,15 @@ def prepare(
     color: tuple[Planes, Planes, Planes] | None = None
     flat_color: NDArray[np.uint8] | None = None
     vertex_color = display_list.color[boxes.primitive]
-    if shading == "gouraud":
+    if shading_for(display_list, shading) == "gouraud":
         channels = vertex_color.astype(np.int64)
         red, green, blue = (
             solver.solve(channels[:, :, channel], color_word_bits(fraction_bits, *screen))
             for channel in range(3)
         )
         color = red, green, blue
-    elif shading == "flat":
-        flat_color = vertex_color[:, 0]
     else:
-        raise ValueError(f"shading: {shading!r} is neither 'flat' nor 'gouraud'")
+        flat_color = vertex_color[:, 0]
     return PreparedTriangles(
         primitive=boxes.primitive.astype(np.int32),
         top=top,
