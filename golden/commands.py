@@ -1,0 +1,181 @@
+"""The words between the host and the central broadcast controller, version 1.
+
+One place for the layout: the hardware builds its structures from these tables,
+the host packs its words with them, and ``docs/command-words.md`` describes them.
+A command is one word on the command stream; in a file it is ``command_words``
+32-bit words, least significant first.  The opcode is in the low ``OPCODE_BITS``
+bits, the fields follow from ``BODY_OFFSET`` upwards without gaps.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .configuration import CHANNEL_BITS, MachineConfiguration
+from .setup import PreparedTriangles
+
+VERSION = 1
+OPCODE_BITS = 4
+BODY_OFFSET = 8
+WORD_BITS = 32
+CHANNELS = ("red", "green", "blue")
+EDGES = ("long", "upper", "lower")
+
+#: Field name → bits, or a nested layout; in order, from the least significant bit.
+Layout: TypeAlias = "dict[str, int | Layout]"
+
+
+class Opcode(IntEnum):
+    """What the host can ask for."""
+
+    FRAME_START = 1  # clear the back picture to the background colour
+    TRIANGLE = 2  # vertices; reserved for the machine with set-up in hardware
+    PREPARED_TRIANGLE = 3  # increments computed by the host
+    FRAME_END = 4  # finish the picture, show it from the next scan on
+    READ_DEPTH = 5  # send every word of the depth buffer
+    READ_COUNTERS = 6  # send the work of every processing element
+
+
+class ResponseKind(IntEnum):
+    """What the machine answers: ``RESPONSE_KIND_BITS`` of kind below a 32-bit value."""
+
+    DOMAIN = 1  # at boot, per processing element: first unit << 16 | number of units
+    UNITS = 2  # at boot: units in some domain << 16 | total units
+    PICTURE = 3  # at boot: the machine's height << 16 | width
+    BOOTED = 4  # at boot: cycles since reset
+    FRAME_DRAWN = 5  # cycles from the frame start to the last processing element's done
+    FRAME_SHOWN = 6  # scans that began with the old picture since the frame start
+    DEPTH = 7  # one word of the depth buffer, units in order, addresses ascending
+    FRAGMENTS = 8  # per processing element: fragments tested since the frame start
+    BUSY = 9  # per processing element: cycles not idle since the frame start
+    ERROR = 10  # one of Fault
+
+
+class Fault(IntEnum):
+    """The value of an ``ERROR`` response."""
+
+    UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
+    UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two: nothing is drawn
+
+
+RESPONSE_KIND_BITS = 8
+RESPONSE_VALUE_BITS = 32
+
+
+def plane_layout(bits: int) -> Layout:
+    """An interpolant: its value at the bounding box's corner, its steps per pixel."""
+    return {"start": bits, "step_x": bits, "step_y": bits}
+
+
+def edge_layout(configuration: MachineConfiguration) -> Layout:
+    """An edge's columns, row by row: an exact quotient and remainder by the edge's height."""
+    return {
+        "column": configuration.edge_column_bits,
+        "remainder": configuration.edge_remainder_bits,
+        "column_step": configuration.edge_column_bits,
+        "remainder_step": configuration.edge_remainder_bits,
+        "denominator": configuration.edge_remainder_bits,
+    }
+
+
+def planes_layout(configuration: MachineConfiguration) -> Layout:
+    """What is interpolated over a triangle, or constant on it."""
+    layout: Layout = {"depth": plane_layout(configuration.depth_plane_bits)}
+    for channel in CHANNELS:
+        layout[channel] = (CHANNEL_BITS if configuration.shading == "flat"
+                           else plane_layout(configuration.channel_plane_bits))
+    return layout
+
+
+def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``PREPARED_TRIANGLE``; also what is broadcast to the processing elements."""
+    rows, columns = configuration.y_bits, configuration.x_bits
+    return {
+        "top": rows, "middle": rows, "bottom": rows, "left": columns, "right": columns,
+        "long_edge_left": 1,
+        **{edge: edge_layout(configuration) for edge in EDGES},
+        "planes": planes_layout(configuration),
+    }
+
+
+def frame_start_layout() -> Layout:
+    """The body of ``FRAME_START``: the background colour."""
+    return dict.fromkeys(CHANNELS, CHANNEL_BITS)
+
+
+def layout_bits(layout: Layout) -> int:
+    return sum(entry if isinstance(entry, int) else layout_bits(entry)
+               for entry in layout.values())
+
+
+def command_words(configuration: MachineConfiguration) -> int:
+    """32-bit words that one command takes in a file."""
+    bits = BODY_OFFSET + max(layout_bits(prepared_triangle_layout(configuration)),
+                             layout_bits(frame_start_layout()))
+    return -(-bits // WORD_BITS)
+
+
+def command_bits(configuration: MachineConfiguration) -> int:
+    return command_words(configuration) * WORD_BITS
+
+
+def pack(layout: Layout, values: Any) -> Any:
+    """Lay ``values`` (a nested dict of integers, or of object arrays of them) out as ``layout``
+    says, each taken modulo its field."""
+    word: Any = 0
+    offset = 0
+    for name, entry in layout.items():
+        if isinstance(entry, int):
+            word = word + ((values[name] & ((1 << entry) - 1)) << offset)
+            offset += entry
+        else:
+            word = word + (pack(entry, values[name]) << offset)
+            offset += layout_bits(entry)
+    return word
+
+
+def command(opcode: Opcode, body: int = 0) -> int:
+    return int(opcode) | body << BODY_OFFSET
+
+
+def frame_start(background: tuple[int, int, int]) -> int:
+    return command(Opcode.FRAME_START,
+                   pack(frame_start_layout(), dict(zip(CHANNELS, background, strict=True))))
+
+
+def prepared_triangles(configuration: MachineConfiguration,
+                       prepared: PreparedTriangles) -> NDArray[np.object_]:
+    """The ``PREPARED_TRIANGLE`` command of every prepared triangle, in order."""
+
+    def integers(array: Any) -> NDArray[np.object_]:
+        return np.asarray(array).astype(object)
+
+    def plane(planes: Any) -> dict[str, Any]:
+        return {name: integers(getattr(planes, name)) for name in ("start", "step_x", "step_y")}
+
+    if configuration.shading == "flat":
+        assert prepared.flat_color is not None
+        colors = [integers(prepared.flat_color[:, channel]) for channel in range(3)]
+    else:
+        assert prepared.color is not None
+        colors = [plane(planes) for planes in prepared.color]
+    values: dict[str, Any] = {
+        name: integers(getattr(prepared, name))
+        for name in ("top", "middle", "bottom", "left", "right", "long_edge_left")
+    }
+    for edge in EDGES:
+        edges = getattr(prepared, edge)
+        values[edge] = {name: integers(getattr(edges, name)) for name in edge_layout(configuration)}
+    values["planes"] = {"depth": plane(prepared.depth),
+                        **dict(zip(CHANNELS, colors, strict=True))}
+    body: NDArray[np.object_] = pack(prepared_triangle_layout(configuration), values)
+    return (body << BODY_OFFSET) + int(Opcode.PREPARED_TRIANGLE)
+
+
+def unpack_response(word: int) -> tuple[ResponseKind, int]:
+    kind = ResponseKind(word & ((1 << RESPONSE_KIND_BITS) - 1))
+    return kind, word >> RESPONSE_KIND_BITS

@@ -1,0 +1,204 @@
+"""The configuration of one machine: every number that its hardware is built from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, parse_cards
+from .display_list import DisplayList, coordinate_bits
+from .errors import InputError
+from .fixed import MAX_FRACTION_BITS
+from .interlace import Interlace, interlace_for
+from .setup import (
+    COLOR_BITS,
+    Shading,
+    color_word_bits,
+    depth_word_bits,
+    edge_column_bits,
+    edge_remainder_bits,
+    scene_fraction_bits,
+)
+from .video_timing import VideoTiming, video_timing
+
+MAXIMUM_SIZE = 4096
+MAXIMUM_WORDS = 1 << 20  # of one memory unit
+CHANNEL_BITS = COLOR_BITS
+
+
+@dataclass(frozen=True)
+class MachineConfiguration:
+    """What the cards are built for.
+
+    ``cards``             card order, left to right, spelled out or as ``4x(PMM)``
+    ``width``, ``height`` the highest resolution, which commands and scan addresses use
+    ``sub_bits``          sub-pixel bits of a vertex coordinate
+    ``depth_bits``        bits of a stored depth
+    ``fraction_bits``     fraction bits of the interpolants
+    ``shading``           ``"flat"`` builds no colour interpolators
+    ``words``             words of each memory unit; 0 means what ``width`` × ``height`` needs
+    ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
+    ``fifo_depth``        primitives a processing element can hold in waiting
+    ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
+    ``timing``            blanking and sync of a scan; None means the standard one for the size
+    ``allow_orphans``     accept memory units left of every processing element
+
+    Raises ``InputError`` where a number is out of range or the cards do not make a machine.
+    """
+
+    cards: str
+    width: int
+    height: int
+    sub_bits: int = 8
+    depth_bits: int = 24
+    fraction_bits: int = 16
+    shading: Shading = "gouraud"
+    words: int = 0
+    maximum_units: int = 0
+    fifo_depth: int = 16
+    clocks_per_pixel: int = 4
+    timing: VideoTiming = field(default=None)  # type: ignore[assignment]
+    allow_orphans: bool = False
+
+    def __post_init__(self) -> None:
+        def fix(name: str, value: Any) -> None:
+            object.__setattr__(self, name, value)
+
+        fix("cards", parse_cards(self.cards))
+        for name, low, high in (
+            ("width", 1, MAXIMUM_SIZE),
+            ("height", 1, MAXIMUM_SIZE),
+            ("sub_bits", 1, 8),
+            ("depth_bits", 2, 32),
+            ("fraction_bits", 0, MAX_FRACTION_BITS),
+            ("words", 0, MAXIMUM_WORDS),
+            ("maximum_units", 0, MAXIMUM_SIZE),
+            ("fifo_depth", 2, 4096),
+            ("clocks_per_pixel", 2, 256),
+        ):
+            value = getattr(self, name)
+            if not isinstance(value, int) or not low <= value <= high:
+                raise InputError(f"{name}: {value!r} is not a whole number from {low} to {high}")
+        if self.shading not in ("flat", "gouraud"):
+            raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")
+        if not self.allow_orphans:
+            check_cards(self.cards)
+        if not self.words:
+            full = Interlace(self.units.bit_length() - 1, self.width, self.height)
+            if full.words > MAXIMUM_WORDS:
+                raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
+                                 f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
+                                 "add memory units or make the picture smaller")
+            fix("words", full.words)
+        if not self.maximum_units:
+            fix("maximum_units", self.units)
+        if self.maximum_units < self.units:
+            raise InputError(f"maximum_units: the ID lines carry {self.maximum_units}, the cage "
+                             f"holds {self.units} memory units")
+        if self.timing is None:
+            fix("timing", video_timing(self.width, self.height))
+        if (self.timing.horizontal_active, self.timing.vertical_active) != (self.width,
+                                                                            self.height):
+            raise InputError(f"timing: shows {self.timing.horizontal_active}x"
+                             f"{self.timing.vertical_active}, the machine draws "
+                             f"{self.width}x{self.height}")
+
+    # Cards
+
+    @property
+    def units(self) -> int:
+        return self.cards.count(MEMORY_UNIT)
+
+    @property
+    def processing_elements(self) -> int:
+        return self.cards.count(PROCESSING_ELEMENT)
+
+    @property
+    def id_bits(self) -> int:
+        """ID lines on the backplane: enough for the total, not only the last unit's number."""
+        return self.maximum_units.bit_length()
+
+    @property
+    def interlace(self) -> Interlace:
+        """The interlace this cage settles on at boot."""
+        return interlace_for(self.width, self.height, words=self.words, units=self.units)
+
+    def interlaces(self) -> tuple[Interlace, ...]:
+        """One for every number of units the cards must be ready for, fewest first."""
+        counts = [1 << bits for bits in range(self.maximum_units.bit_length())]
+        return tuple(interlace_for(self.width, self.height, words=self.words, units=units)
+                     for units in counts)
+
+    # Widths: each with its reason
+
+    @property
+    def x_bits(self) -> int:
+        """0 … width, the exclusive end of a span included."""
+        return self.width.bit_length()
+
+    @property
+    def y_bits(self) -> int:
+        return self.height.bit_length()
+
+    @property
+    def address_bits(self) -> int:
+        return max(1, (self.words - 1).bit_length())
+
+    @property
+    def coordinate_bits(self) -> int:
+        return coordinate_bits(self.width, self.height, self.sub_bits)
+
+    @property
+    def edge_column_bits(self) -> int:
+        return edge_column_bits(self.coordinate_bits, self.sub_bits)
+
+    @property
+    def edge_remainder_bits(self) -> int:
+        return edge_remainder_bits(self.coordinate_bits)
+
+    @property
+    def depth_plane_bits(self) -> int:
+        return depth_word_bits(self.depth_bits, self.fraction_bits, self.width, self.height)
+
+    @property
+    def channel_plane_bits(self) -> int:
+        return color_word_bits(self.fraction_bits, self.width, self.height)
+
+    @property
+    def depth_background(self) -> int:
+        return (1 << self.depth_bits) - 1
+
+    @property
+    def cycles_per_scan(self) -> int:
+        return self.timing.pixels * self.clocks_per_pixel
+
+
+def configure(display_list: DisplayList, *, cards: str, fraction_bits: int | None = None,
+              **rest: Any) -> MachineConfiguration:
+    """The machine for one display list: its size, its formats, only the interpolants it needs.
+
+    ``fraction_bits`` None picks the width at which this list is drawn exactly.
+    """
+    if fraction_bits is None:
+        fraction_bits = scene_fraction_bits(display_list)
+    rest.setdefault("shading", "flat" if display_list.flat else "gouraud")
+    return MachineConfiguration(
+        cards=cards, width=display_list.width, height=display_list.height,
+        sub_bits=display_list.sub_bits, depth_bits=display_list.depth_bits,
+        fraction_bits=fraction_bits, **rest)
+
+
+#: Named machines: ``tiny`` at one glance, ``small`` for quick tests, ``paper`` for 512×512.
+PRESETS: dict[str, dict[str, Any]] = {
+    "tiny": {"cards": "PM", "width": 16, "height": 16, "fraction_bits": 28,
+             "clocks_per_pixel": 2},
+    "small": {"cards": "2x(PMM)", "width": 64, "height": 64, "fraction_bits": 40},
+    "paper": {"cards": "4x(PMMMM)", "width": 512, "height": 512, "fraction_bits": 50},
+}
+
+
+def preset(name: str, **changes: Any) -> MachineConfiguration:
+    """A named machine, with ``changes`` to its fields; ``InputError`` for an unknown name."""
+    if name not in PRESETS:
+        raise InputError(f"preset: {name!r} is none of {', '.join(PRESETS)}")
+    return MachineConfiguration(**PRESETS[name] | changes)

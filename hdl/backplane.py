@@ -1,0 +1,147 @@
+"""The lines of the backplane: what every slot has, whatever card is in it.
+
+::
+
+      CBC ──broadcast──────┬───────────┬──────────┬──────────┬────────
+                           │           │          │          │
+           ┌─────┐  id   ┌─┴──┐  id  ┌─┴──┐ id+1┌─┴──┐ id+2┌─┴──┐
+           │ CBC ├──────▶│ PE ├─────▶│ MU ├────▶│ MU ├────▶│ PE │ …  ──┐
+           │     │◀──────┤    │◀════▶│    │◀═══▶│    │  ┆  │    │      │ total units
+           └─────┘ resp. └────┘ lines└─┬──┘     └─┬──┘  ┆  └────┘      │
+              ▲ total                  │          │     ┆ a PE ignores the lines from its left
+              └────────────────────────┼──────────┼───────────────────┘
+                                       │          │
+      video scan generator ──scan──────┴──────────┴───────────────────
+                           ◀─video──────────────────────────────────── (wired or)
+"""
+
+from amaranth.hdl import *
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from .layouts import broadcast_layout, response_layout
+
+__all__ = ["BroadcastLines", "Connector", "Lane", "ProcessingElementLines", "ScanLines"]
+
+
+class Lane:
+    """Bits of ``write_lanes``: which parts of a word a write changes."""
+
+    DEPTH = 0b001
+    BACK = 0b010
+    FRONT = 0b100
+
+
+class ProcessingElementLines(wiring.Signature):
+    """The bus of one processing element to the memory units of its domain (figure 12).
+
+    A read and a write can go to two different units in the same clock.  Each
+    takes place in a clock in which its ``valid`` is high and its ``busy`` is
+    low; a request that no unit answers is never busy.  ``busy`` never depends
+    on the same request's own ``valid`` being taken.
+
+    Members
+    -------
+    read_valid, read_unit, read_address: Out
+        Read the depth at an address of a unit.
+    read_busy: In(1)
+        The unit's port is taken by the scan or by a write.
+    read_data: In(depth_bits)
+        Depth, in the clock after the read; 0 when no unit answered.
+    write_valid, write_unit, write_address, write_lanes, write_depth, write_color: Out
+        Write the lanes named by ``Lane`` bits.
+    write_every: Out(1)
+        The write is for every unit of the domain, whatever ``write_unit`` says.
+    write_busy: In(1)
+        A unit's port is taken by the scan.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "read_valid": Out(1),
+            "read_unit": Out(configuration.id_bits),
+            "read_address": Out(configuration.address_bits),
+            "read_busy": In(1),
+            "read_data": In(configuration.depth_bits),
+            "write_valid": Out(1),
+            "write_every": Out(1),
+            "write_unit": Out(configuration.id_bits),
+            "write_address": Out(configuration.address_bits),
+            "write_lanes": Out(3),
+            "write_depth": Out(configuration.depth_bits),
+            "write_color": Out(3 * CHANNEL_BITS),
+            "write_busy": In(1),
+        })
+
+
+class Connector(wiring.Signature):
+    """The lines that run from one slot to the next; ``Out`` is towards the right.
+
+    Members
+    -------
+    id: Out(id_bits)
+        Memory units to the left (figures 10 and 11).
+    lines: Out(ProcessingElementLines)
+        Driven by the nearest processing element to the left.
+    response: In(stream of response words)
+        What the processing elements further right have to say to the controller.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "id": Out(configuration.id_bits),
+            "lines": Out(ProcessingElementLines(configuration)),
+            "response": In(stream.Signature(response_layout())),
+        })
+
+
+class BroadcastLines(wiring.Signature):
+    """The controller's lines to every processing element, and their wired answers.
+
+    Members
+    -------
+    strobe: Out(1)
+        ``packet`` is for every processing element to take in this clock; only while ``ready``.
+    packet: Out(broadcast_layout)
+        Operation and body.
+    ready: In(1)
+        The processing element can take a packet (wired and over all).
+    done: In(1)
+        It has finished everything it was told and sent all its responses (wired and over all).
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "strobe": Out(1),
+            "packet": Out(broadcast_layout(configuration)),
+            "ready": In(1),
+            "done": In(1),
+        })
+
+
+class ScanLines(wiring.Signature):
+    """The video scan generator's lines to every memory unit (figures 6 to 9).
+
+    Members
+    -------
+    fetch: Out(1)
+        This clock announces a scan slot: a unit whose pixel is due reads it in the next clock.
+    fetch_x, fetch_y: Out
+        The pixel to fetch, at the highest resolution.
+    show_x, show_y: Out
+        The pixel on the video bus: ``fetch_x``, ``fetch_y`` of three clocks ago.
+    video: In(24)
+        Red in the low byte, then green, blue: from the unit that holds the shown pixel, others
+        drive 0 (wired or).
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "fetch": Out(1),
+            "fetch_x": Out(configuration.x_bits),
+            "fetch_y": Out(configuration.y_bits),
+            "show_x": Out(configuration.x_bits),
+            "show_y": Out(configuration.y_bits),
+            "video": In(3 * CHANNEL_BITS),
+        })

@@ -1,0 +1,200 @@
+"""The central broadcast controller: boots the cage, announces triangles, swaps pictures."""
+
+from amaranth.hdl import *
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden import commands
+from ..golden.commands import Fault, Opcode, ResponseKind
+from ..golden.configuration import MachineConfiguration
+from .backplane import BroadcastLines, Connector
+from .layouts import Operation, broadcast_layout, prepared_triangle_layout, response_layout
+
+__all__ = ["CentralBroadcastController"]
+
+#: Clocks until a strobe shows in ``done``: into the FIFO, and out of it.
+SETTLE_CLOCKS = 3
+
+
+class CentralBroadcastController(wiring.Component):
+    """Takes commands from the host and tells all processing elements at once (figure 12).
+
+    After reset it has the processing elements survey their domains and clear
+    both pictures, and reports: each domain, owned and total units, the
+    resolution, the cycles it took.  Then it takes commands in order; every
+    opcode and response is described in ``golden.commands``.  A finished picture
+    is shown from the start of the next scan on; until then the old one stays,
+    whole.
+
+    Prepared triangles pass straight from the command to the broadcast; a set-up
+    unit that turns ``TRIANGLE`` into the same prepared form belongs between the
+    two, in ``_announce``.
+
+    Latency: a prepared triangle is broadcast in the clock in which it is taken.
+    Throughput: a triangle a clock while every FIFO has room.
+
+    Members
+    -------
+    commands: In(stream of command words)
+    responses: Out(stream of response_layout)
+    right: Out(Connector)
+        The first slot; here the ID lines start at 0.
+    total: In(id_bits)
+        Number of memory units, from the right end of the ID lines.
+    broadcast: Out(BroadcastLines)
+    scan_start: In(1)
+        A scan begins.
+    front: Out(1)
+        Which of the two colours in the memory units is shown.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "commands": In(stream.Signature(commands.command_bits(configuration))),
+            "responses": Out(stream.Signature(response_layout())),
+            "right": Out(Connector(configuration)),
+            "total": In(configuration.id_bits),
+            "broadcast": Out(BroadcastLines(configuration)),
+            "scan_start": In(1),
+            "front": Out(1),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        opcode = self.commands.payload[:commands.OPCODE_BITS]
+        body = self.commands.payload[commands.BODY_OFFSET:]
+        packet = Signal(broadcast_layout(self.configuration))
+        m.d.comb += self.broadcast.packet.eq(packet)
+
+        cycles, frame_cycles, scans, owned = (Signal(32) for _ in range(4))
+        settle = Signal(range(SETTLE_CLOCKS + 1))
+        quiet = self.broadcast.done & (settle == 0)
+        m.d.sync += [cycles.eq(cycles + 1), frame_cycles.eq(frame_cycles + 1)]
+        with m.If(self.broadcast.strobe):
+            m.d.sync += settle.eq(SETTLE_CLOCKS)
+        with m.Elif(settle != 0):
+            m.d.sync += settle.eq(settle - 1)
+        with m.If(self.scan_start):
+            m.d.sync += scans.eq(scans + 1)
+        supported, picture = self._picture(m)
+        self._count_owned(m, owned)
+
+        def announce(operation, then=None, *, when=1):
+            """Strobe the packet as soon as all are ready."""
+            m.d.comb += packet.operation.eq(operation)
+            with m.If(self.broadcast.ready & when):
+                m.d.comb += self.broadcast.strobe.eq(1)
+                if then is not None:
+                    m.next = then
+
+        def respond(kind, value, then):
+            """The controller's own response; the chain waits meanwhile."""
+            m.d.comb += [
+                self.responses.valid.eq(1),
+                self.responses.payload.kind.eq(kind),
+                self.responses.payload.value.eq(value),
+                self.right.response.ready.eq(0),
+            ]
+            with m.If(self.responses.ready):
+                m.next = then
+
+        # Unless the controller itself speaks, the processing elements do.
+        m.d.comb += [
+            self.responses.valid.eq(self.right.response.valid),
+            self.responses.payload.eq(self.right.response.payload),
+            self.right.response.ready.eq(self.responses.ready),
+        ]
+
+        with m.FSM():
+            with m.State("SURVEY"):
+                announce(Operation.SURVEY, "SURVEYING")
+            with m.State("SURVEYING"), m.If(quiet):
+                m.next = "REPORT_UNITS"
+            with m.State("REPORT_UNITS"):
+                respond(ResponseKind.UNITS, Cat(self.total | C(0, 16), owned[:16]),
+                        "CHECK_UNITS")
+            with m.State("CHECK_UNITS"):
+                m.next = "INITIALISE"
+                with m.If(~supported):
+                    m.next = "REFUSE"
+            with m.State("INITIALISE"):
+                m.d.comb += packet.body.clear.front.eq(1)
+                announce(Operation.CLEAR, "INITIALISING")
+            with m.State("INITIALISING"), m.If(quiet):
+                m.next = "REPORT_PICTURE"
+            with m.State("REPORT_PICTURE"):
+                respond(ResponseKind.PICTURE, picture, "REPORT_BOOTED")
+            with m.State("REPORT_BOOTED"):
+                respond(ResponseKind.BOOTED, cycles, "COMMAND")
+
+            with m.State("COMMAND"), m.If(self.commands.valid):
+                m.d.comb += self.commands.ready.eq(self.broadcast.ready)
+                with m.Switch(opcode):
+                    with m.Case(Opcode.PREPARED_TRIANGLE):
+                        self._announce(m, packet, body, announce)
+                    with m.Case(Opcode.FRAME_START):
+                        clear = packet.body.clear
+                        m.d.comb += Cat(clear.red, clear.green, clear.blue).eq(body)
+                        m.d.sync += [frame_cycles.eq(0), scans.eq(self.scan_start)]
+                        announce(Operation.CLEAR)
+                    with m.Case(Opcode.FRAME_END):
+                        m.d.comb += self.commands.ready.eq(1)
+                        m.next = "DRAWING"
+                    with m.Case(Opcode.READ_DEPTH):
+                        announce(Operation.READ_DEPTH, "ANSWERING", when=quiet)
+                        m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
+                    with m.Case(Opcode.READ_COUNTERS):
+                        announce(Operation.READ_COUNTERS, "ANSWERING", when=quiet)
+                        m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
+                    with m.Default():
+                        m.d.comb += self.commands.ready.eq(1)
+                        m.next = "UNKNOWN"
+            with m.State("UNKNOWN"):
+                respond(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
+            with m.State("ANSWERING"), m.If(quiet):
+                m.next = "COMMAND"
+            with m.State("DRAWING"), m.If(quiet):
+                drawn = Signal.like(frame_cycles)
+                m.d.sync += drawn.eq(frame_cycles)
+                m.next = "REPORT_DRAWN"
+            with m.State("REPORT_DRAWN"):
+                respond(ResponseKind.FRAME_DRAWN, drawn, "SWAP")
+            with m.State("SWAP"), m.If(self.scan_start):
+                # Every pixel of the scan that begins here is fetched after this edge.
+                shown = Signal.like(scans)
+                m.d.sync += [self.front.eq(~self.front), shown.eq(scans)]
+                m.next = "REPORT_SHOWN"
+            with m.State("REPORT_SHOWN"):
+                respond(ResponseKind.FRAME_SHOWN, shown, "COMMAND")
+
+            with m.State("REFUSE"):
+                respond(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, "REFUSED")
+            with m.State("REFUSED"):
+                m.d.comb += self.commands.ready.eq(1)
+                with m.If(self.commands.valid):
+                    m.next = "REFUSE"
+        return m
+
+    def _announce(self, m, packet, body, announce):
+        """The seam for set-up in hardware: whatever prepares a triangle, this broadcasts it."""
+        size = prepared_triangle_layout(self.configuration).size
+        m.d.comb += packet.body.draw.eq(body[:size])
+        announce(Operation.DRAW)
+
+    def _picture(self, m):
+        """Whether the number of units is one the cards can interlace, and the resolution."""
+        supported, picture = Signal(), Signal(32)
+        with m.Switch(self.total):
+            for interlace in self.configuration.interlaces():
+                with m.Case(interlace.units):
+                    m.d.comb += [supported.eq(1),
+                                 picture.eq(interlace.height << 16 | interlace.width)]
+        return supported, picture
+
+    def _count_owned(self, m, owned):
+        """Add up the domains as their reports pass; what is missing from the total is nobody's."""
+        response = self.right.response
+        with m.If(response.valid & response.ready
+                  & (response.payload.kind == ResponseKind.DOMAIN)):
+            m.d.sync += owned.eq(owned + response.payload.value[:16])

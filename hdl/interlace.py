@@ -1,0 +1,179 @@
+"""Pixel ↔ unit arithmetic, as each board does it from the lines alone (figures 13 and 14)."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import MachineConfiguration
+from ..golden.interlace import Interlace
+
+__all__ = ["LatticeBlock", "PixelAddress", "ScanAddress", "unit_number"]
+
+
+def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
+    """The number of the unit that holds pixel (x, y): some low bits of both, reordered."""
+    axes = {"x": x, "y": y}
+    return Cat(axes[axis][bit] for axis, bit in reversed(interlace.bit_order))
+
+
+class PixelAddress(wiring.Component):
+    """Where a pixel lies in the memory units.  Combinational.
+
+    Members
+    -------
+    total: In(id_bits)
+        Number of memory units, from the total-units lines.
+    x, y: In
+        A pixel at the machine's own resolution.
+    unit: Out(id_bits)
+        Number of the unit that holds it.
+    address: Out(address_bits)
+        Its word there.  Both are 0 while ``total`` is no supported number.
+    words: Out(range(words + 1))
+        Words of each unit that hold the picture.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "total": In(configuration.id_bits),
+            "x": In(configuration.x_bits),
+            "y": In(configuration.y_bits),
+            "unit": Out(configuration.id_bits),
+            "address": Out(configuration.address_bits),
+            "words": Out(range(configuration.words + 1)),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        interlaces = self.configuration.interlaces()
+        row, column = Signal.like(self.y), Signal.like(self.x)
+        pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))
+        with m.Switch(self.total):
+            for interlace in interlaces:
+                with m.Case(interlace.units):
+                    m.d.comb += [
+                        self.unit.eq(unit_number(interlace, self.x, self.y)),
+                        row.eq(self.y >> interlace.y_unit_bits),
+                        column.eq(self.x >> interlace.x_unit_bits),
+                        pitch.eq(interlace.pitch),
+                        self.words.eq(interlace.words),
+                    ]
+        m.d.comb += self.address.eq(row * pitch + column)
+        return m
+
+
+class ScanAddress(wiring.Component):
+    """What a scan address means to one memory unit.  Combinational.
+
+    Scan addresses are at the highest resolution; the low bits that this
+    machine's picture does not have are ignored here, as the paper has it.
+
+    Members
+    -------
+    total, id: In(id_bits)
+        Number of memory units and this unit's own number.
+    x, y: In
+        Scan address.
+    selected: Out(1)
+        This unit holds the pixel.
+    fetch: Out(1)
+        The address is the first of a group of pixels that lie in neighbouring units, one of them
+        in this unit: the time to read ``address`` for the whole group.
+    address: Out(address_bits)
+        This unit's word of that group.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "total": In(configuration.id_bits),
+            "id": In(configuration.id_bits),
+            "x": In(configuration.x_bits),
+            "y": In(configuration.y_bits),
+            "selected": Out(1),
+            "fetch": Out(1),
+            "address": Out(configuration.address_bits),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.pixel = pixel = PixelAddress(configuration=self.configuration)
+        m.d.comb += [
+            pixel.total.eq(self.total),
+            self.selected.eq(pixel.unit == self.id),
+            self.address.eq(pixel.address),
+        ]
+        with m.Switch(self.total):
+            for interlace in self.configuration.interlaces():
+                of_y = [axis == "y" for axis, _ in reversed(interlace.bit_order)]
+                rows = sum(bit << place for place, bit in enumerate(of_y))
+                group_bits = interlace.x_shift + interlace.x_unit_bits
+                with m.Case(interlace.units):
+                    m.d.comb += [
+                        pixel.x.eq(self.x >> interlace.x_shift),
+                        pixel.y.eq(self.y >> interlace.y_shift),
+                        self.fetch.eq((self.x[:group_bits] == 0)
+                                      & (((pixel.unit ^ self.id) & rows) == 0)),
+                    ]
+        return m
+
+
+class LatticeBlock(wiring.Component):
+    """The largest aligned block of units at the start of a range of them.  Combinational.
+
+    The pixels of an aligned power-of-two block of units form a regular lattice;
+    a processing element walks its domain block by block (one, where the shares
+    are equal powers of two).
+
+    Members
+    -------
+    total: In(id_bits)
+        Number of memory units.
+    first, end: In(id_bits)
+        The range of units, ``end`` excluded; not empty.
+    after: Out(id_bits)
+        First unit after the block.
+    x_offset, y_offset: Out
+        The lattice's pixel nearest the origin.
+    x_stride_bits, y_stride_bits: Out
+        Log2 of the distance between neighbouring lattice pixels.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        interlaces = configuration.interlaces()
+        x_bits = max(interlace.x_unit_bits for interlace in interlaces)
+        y_bits = max(interlace.y_unit_bits for interlace in interlaces)
+        super().__init__({
+            "total": In(configuration.id_bits),
+            "first": In(configuration.id_bits),
+            "end": In(configuration.id_bits),
+            "after": Out(configuration.id_bits),
+            "x_offset": Out(x_bits),
+            "y_offset": Out(y_bits),
+            "x_stride_bits": Out(range(x_bits + 1)),
+            "y_stride_bits": Out(range(y_bits + 1)),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        for block_bits in range(self.configuration.id_bits):
+            size = 1 << block_bits
+            aligned = self.first[:block_bits] == 0
+            with m.If(aligned & (self.first + size <= self.end)):
+                m.d.comb += self.after.eq(self.first + size)
+                with m.Switch(self.total):
+                    for interlace in self.configuration.interlaces():
+                        if block_bits <= interlace.unit_bits:
+                            x_stride, y_stride = interlace.stride_bits(block_bits)
+                            with m.Case(interlace.units):
+                                m.d.comb += [self.x_stride_bits.eq(x_stride),
+                                             self.y_stride_bits.eq(y_stride)]
+        with m.Switch(self.total):
+            for interlace in self.configuration.interlaces():
+                with m.Case(interlace.units):
+                    for place, (axis, bit) in enumerate(reversed(interlace.bit_order)):
+                        offset = self.x_offset if axis == "x" else self.y_offset
+                        m.d.comb += offset[bit].eq(self.first[place])
+        return m

@@ -1,0 +1,82 @@
+"""Structures of the command and broadcast words, built from the shared tables."""
+
+from amaranth.hdl import *
+from amaranth.lib import data, enum
+
+from ..golden import commands
+from ..golden.configuration import MachineConfiguration
+
+__all__ = [
+    "Operation",
+    "broadcast_layout",
+    "prepared_triangle_layout",
+    "response_layout",
+    "span_layout",
+    "struct_layout",
+]
+
+
+class Operation(enum.Enum, shape=3):
+    """What the central broadcast controller can tell every processing element at once."""
+
+    SURVEY = 1  # find the memory units of your domain and report them
+    CLEAR = 2  # background depth and colour into every word
+    DRAW = 3  # rasterise one prepared triangle
+    READ_DEPTH = 4  # send every depth word of your domain
+    READ_COUNTERS = 5  # send your counts since the last frame start
+
+
+def struct_layout(layout: commands.Layout) -> data.StructLayout:
+    """A layout table as an Amaranth structure, first field in the lowest bits."""
+    return data.StructLayout({
+        name: unsigned(entry) if isinstance(entry, int) else struct_layout(entry)
+        for name, entry in layout.items()
+    })
+
+
+def prepared_triangle_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    return struct_layout(commands.prepared_triangle_layout(configuration))
+
+
+def clear_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """What ``Operation.CLEAR`` carries: a colour, and whether the front picture goes too."""
+    return data.StructLayout({**struct_layout(commands.frame_start_layout()).members, "front": 1})
+
+
+def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """One broadcast word: an operation and its body."""
+    return data.StructLayout({
+        "operation": Operation,
+        "body": data.UnionLayout({
+            "draw": prepared_triangle_layout(configuration),
+            "clear": clear_layout(configuration),
+        }),
+    })
+
+
+def response_layout() -> data.StructLayout:
+    return data.StructLayout({
+        "kind": unsigned(commands.RESPONSE_KIND_BITS),
+        "value": unsigned(commands.RESPONSE_VALUE_BITS),
+    })
+
+
+def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A run of one lattice row of a triangle: where it starts and how many pixels it has.
+
+    ``x``, ``y``        first pixel, at the machine's resolution
+    ``x_steps``         pixel columns from the triangle's origin to it
+    ``y_steps``         pixel rows from the triangle's origin to it
+    ``more``            pixels after the first
+    ``x_stride_bits``   log2 of the distance between neighbouring pixels of the run
+    ``planes``          the triangle's interpolants at its origin
+    """
+    return data.StructLayout({
+        "x": unsigned(configuration.x_bits),
+        "y": unsigned(configuration.y_bits),
+        "x_steps": unsigned(configuration.x_bits),
+        "y_steps": unsigned(configuration.y_bits),
+        "more": unsigned(configuration.x_bits),
+        "x_stride_bits": range(configuration.maximum_units.bit_length()),
+        "planes": struct_layout(commands.planes_layout(configuration)),
+    })

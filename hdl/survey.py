@@ -1,0 +1,86 @@
+"""How a processing element learns the upper end of its domain."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import MachineConfiguration
+from .backplane import Lane, ProcessingElementLines
+
+__all__ = ["Survey"]
+
+
+class Survey(wiring.Component):
+    """Writes and reads a word in each possible unit, from the first one on.
+
+    A unit of the domain gives back what was written, twice, with every bit both
+    ways; where none answers, the lines read 0.  The units found are those up to
+    the first that does not answer.
+
+    Latency: four clocks a unit, plus the waits for scan slots, plus two at the
+    unit that does not answer.
+
+    Members
+    -------
+    first, total: In(id_bits)
+        From the lines: the first unit to the right, and the number of all.
+    start: In(1)
+        Begin; ignored while surveying.
+    done: Out(1)
+        High for one clock at the end.
+    end: Out(id_bits)
+        First unit beyond the domain; ``first`` when there is none.
+    memory: Out(ProcessingElementLines)
+
+    Fuchs & Johnson, step (b) after figure 12.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "first": In(configuration.id_bits),
+            "total": In(configuration.id_bits),
+            "start": In(1),
+            "done": Out(1),
+            "end": Out(configuration.id_bits),
+            "memory": Out(ProcessingElementLines(configuration)),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        depth_bits = self.configuration.depth_bits
+        memory = self.memory
+        second = Signal()  # the complement's turn
+        pattern = Signal(depth_bits)
+        m.d.comb += [
+            # 1010…: neither this nor its complement is what silent lines read.
+            pattern.eq(Const(0xAAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
+            memory.write_unit.eq(self.end),
+            memory.read_unit.eq(self.end),
+            memory.write_depth.eq(pattern),
+            memory.write_lanes.eq(Lane.DEPTH),
+        ]
+        with m.FSM():
+            with m.State("IDLE"), m.If(self.start):
+                m.d.sync += [self.end.eq(self.first), second.eq(0)]
+                m.next = "WRITE"
+            with m.State("WRITE"):
+                with m.If(self.end == self.total):
+                    m.d.comb += self.done.eq(1)
+                    m.next = "IDLE"
+                with m.Else():
+                    m.d.comb += memory.write_valid.eq(1)
+                    with m.If(~memory.write_busy):
+                        m.next = "READ"
+            with m.State("READ"):
+                m.d.comb += memory.read_valid.eq(1)
+                with m.If(~memory.read_busy):
+                    m.next = "COMPARE"
+            with m.State("COMPARE"):
+                with m.If(memory.read_data != pattern):
+                    m.d.comb += self.done.eq(1)
+                    m.next = "IDLE"
+                with m.Else():
+                    m.d.sync += [second.eq(~second), self.end.eq(self.end + second)]
+                    m.next = "WRITE"
+        return m

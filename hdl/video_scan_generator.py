@@ -1,0 +1,120 @@
+"""The video scan generator: addresses out, pixels back, sync to the screen."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from .backplane import ScanLines
+
+__all__ = ["VideoPins", "VideoScanGenerator"]
+
+
+class VideoPins(wiring.Signature):
+    """What leaves the machine for the screen.
+
+    Members
+    -------
+    pixel: Out(1)
+        High in the first clock of every pixel time, blanking included.
+    active: Out(1)
+        The pixel is in the picture; colours are 0 outside.
+    horizontal_sync, vertical_sync: Out(1)
+        With the polarity of the timing.
+    red, green, blue: Out(8)
+    """
+
+    def __init__(self):
+        super().__init__({
+            "pixel": Out(1),
+            "active": Out(1),
+            "horizontal_sync": Out(1),
+            "vertical_sync": Out(1),
+            "red": Out(CHANNEL_BITS),
+            "green": Out(CHANNEL_BITS),
+            "blue": Out(CHANNEL_BITS),
+        })
+
+
+class VideoScanGenerator(wiring.Component):
+    """Scans the picture out of the memory units, however many there are (figures 6 to 9).
+
+    It counts through one standard scan at the highest resolution, and announces
+    each pixel on the scan lines once: that is the scan's time slot, the other
+    clocks of the pixel belong to the processing elements.  Which units read, and
+    which of them drives the bus, they know themselves.
+
+    Latency: a pixel is on the pins four clocks after its fetch was announced.
+    Throughput: a pixel every ``clocks_per_pixel`` clocks.
+
+    Members
+    -------
+    scan: Out(ScanLines)
+    start: Out(1)
+        High for one clock when a scan begins, with its vertical sync; at least a line before
+        its first fetch.
+    pins: Out(VideoPins)
+    """
+
+    #: Clocks from the announcement to the video bus, and on to the pins.
+    bus_latency = 3
+    latency = bus_latency + 1
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "scan": Out(ScanLines(configuration)),
+            "start": Out(1),
+            "pins": Out(VideoPins()),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        timing, scan, pins = self.configuration.timing, self.scan, self.pins
+        clock = Signal(range(self.configuration.clocks_per_pixel))
+        column = Signal(range(timing.horizontal_total))
+        line = Signal(range(timing.vertical_total))
+        m.d.sync += clock.eq(clock + 1)
+        with m.If(clock == self.configuration.clocks_per_pixel - 1):
+            m.d.sync += [clock.eq(0), column.eq(column + 1)]
+            with m.If(column == timing.horizontal_total - 1):
+                m.d.sync += [column.eq(0), line.eq(line + 1)]
+                with m.If(line == timing.vertical_total - 1):
+                    m.d.sync += line.eq(0)
+
+        # Order on both axes: sync, back porch, active, front porch.
+        left = timing.horizontal_sync + timing.horizontal_back
+        top = timing.vertical_sync + timing.vertical_back
+        pixel, active = Signal(), Signal()
+        horizontal_sync, vertical_sync = Signal(), Signal()
+        m.d.comb += [
+            pixel.eq(clock == 0),
+            active.eq((column >= left) & (column < left + timing.horizontal_active)
+                      & (line >= top) & (line < top + timing.vertical_active)),
+            horizontal_sync.eq((column < timing.horizontal_sync)
+                               == timing.horizontal_sync_positive),
+            vertical_sync.eq((line < timing.vertical_sync) == timing.vertical_sync_positive),
+            self.start.eq(pixel & (column == 0) & (line == 0)),
+            scan.fetch.eq(pixel & active),
+            scan.fetch_x.eq(column - left),
+            scan.fetch_y.eq(line - top),
+        ]
+
+        def delayed(signal):
+            """The signal when its pixel is on the video bus."""
+            for stage in range(self.bus_latency):
+                later = Signal.like(signal, name=f"{signal.name}_{stage + 1}", init=0)
+                m.d.sync += later.eq(signal)
+                signal = later
+            return signal
+
+        on_bus = delayed(active)
+        m.d.comb += [scan.show_x.eq(delayed(scan.fetch_x)), scan.show_y.eq(delayed(scan.fetch_y))]
+        m.d.sync += [
+            pins.pixel.eq(delayed(pixel)),
+            pins.active.eq(on_bus),
+            pins.horizontal_sync.eq(delayed(horizontal_sync)),
+            pins.vertical_sync.eq(delayed(vertical_sync)),
+            Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, scan.video, 0)),
+        ]
+        return m

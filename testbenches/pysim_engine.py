@@ -1,0 +1,157 @@
+"""The machine in Amaranth's own simulator."""
+
+from __future__ import annotations
+
+import random
+import time
+from contextlib import nullcontext
+
+from amaranth.hdl import Cat, Shape
+from amaranth.sim import Simulator
+
+from ..golden.commands import ResponseKind
+from ..hdl.machine import Machine
+from .engine import EngineRun, Job, Progress
+from .video_monitor import VideoMonitor
+
+#: Cycles between two calls of the progress function.
+PROGRESS_CYCLES = 256
+
+
+class PysimEngine:
+    """Runs anywhere Python does, and writes waveforms; a few thousand cycles a second."""
+
+    name = "pysim"
+
+    def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
+        return _Run(job, progress, Machine(configuration=job.configuration)).simulate()
+
+
+class _Run:
+    """One simulation: a host that sends, a host that receives, a screen."""
+
+    def __init__(self, job: Job, progress: Progress | None, machine: Machine) -> None:
+        self.job = job
+        self.machine = machine
+        self.progress = progress
+        self.monitor = VideoMonitor(job.configuration)
+        self.responses: list[tuple[ResponseKind, int, int]] = []
+        self.sent = 0
+        self.shown_cycle: int | None = None
+        self.cycle = 0
+
+    def simulate(self) -> EngineRun:
+        simulator = Simulator(self.machine)
+        simulator.add_clock(1e-6)
+        simulator.add_testbench(self._bench)
+        began = time.perf_counter()
+        recording = (simulator.write_vcd(str(self.job.waveform)) if self.job.waveform
+                     else nullcontext())
+        with recording:
+            simulator.run()
+        return EngineRun(self.responses, self.monitor.scans, self.cycle,
+                         time.perf_counter() - began)
+
+    def _scramble(self, ctx) -> None:
+        """Every memory word random, as after power-on."""
+        source = random.Random(self.job.memory_seed)
+        for unit in self.machine.memory_units:
+            for bank in unit.memory.banks:
+                width = Shape.cast(bank.shape).width
+                for address in range(bank.depth):
+                    ctx.set(bank.data[address], source.getrandbits(width))
+
+    async def _bench(self, ctx) -> None:
+        """Host and screen in one loop over the clocks: several benches would cost more time."""
+        if self.job.memory_seed is not None:
+            self._scramble(ctx)
+        commands, responses, pins = (self.machine.commands, self.machine.responses,
+                                     self.machine.pins)
+        send = _Pace(ctx, commands.valid, self.job.stall_seed, salt=0)
+        receive = _Pace(ctx, responses.ready, self.job.stall_seed, salt=1)
+        words = iter(self.job.commands)
+
+        def next_word() -> None:
+            word = next(words, None)
+            if word is None:
+                send.stop()
+            else:
+                ctx.set(commands.payload, word)
+                send.go()
+
+        next_word()
+        receive.go()
+        samples = ctx.tick().sample(
+            commands.ready, responses.valid, responses.payload, pins.pixel, pins.active,
+            pins.vertical_sync, Cat(pins.red, pins.green, pins.blue))
+        async for _, _, taken, given, response, is_pixel, active, in_sync, color in samples:
+            self.cycle += 1
+            if taken and send.high:
+                self.sent += 1
+                next_word()
+            else:
+                send.wait()
+            if given and receive.high:
+                self._receive(response)
+                receive.go()
+            else:
+                receive.wait()
+            if is_pixel:
+                self.monitor.sample(self.cycle, active, in_sync, color)
+                if self._finished():
+                    return
+            if self.cycle % PROGRESS_CYCLES == 0:
+                self._report()
+
+    def _receive(self, response) -> None:
+        kind = ResponseKind(response.kind)
+        self.responses.append((kind, response.value, self.cycle))
+        if kind == ResponseKind.FRAME_SHOWN:
+            self.shown_cycle = self.cycle
+
+    def _report(self) -> None:
+        if self.progress is not None:
+            self.progress(self.cycle, len(self.responses))
+        if self.job.maximum_cycles is not None and self.cycle > self.job.maximum_cycles:
+            raise TimeoutError(
+                f"no end after {self.cycle} cycles: {self.sent} of {len(self.job.commands)} "
+                f"commands taken, {len(self.responses)} of {self.job.responses} responses")
+
+    def _finished(self) -> bool:
+        if self.sent < len(self.job.commands) or len(self.responses) < self.job.responses:
+            return False
+        if self.shown_cycle is None:
+            return True
+        return bool(self.monitor.scans) and self.monitor.scans[-1].cycle > self.shown_cycle
+
+
+class _Pace:
+    """One handshake signal of the host: held high, or low for a random while before."""
+
+    def __init__(self, ctx, signal, seed: int | None, salt: int) -> None:
+        self._ctx = ctx
+        self._signal = signal
+        self._source = None if seed is None else random.Random(seed * 2 + salt)
+        self._pause = 0
+        self.high = False
+
+    def _set(self, high: bool) -> None:
+        if high != self.high:
+            self._ctx.set(self._signal, high)
+            self.high = high
+
+    def go(self) -> None:
+        """Offer the next transfer, after a pause: mostly none, now and then a long one."""
+        if self._source is not None:
+            self._pause = self._source.choice((0, 0, 0, 1, 2, self._source.randrange(20)))
+        self._set(self._pause == 0)
+
+    def wait(self) -> None:
+        """A clock without a transfer."""
+        if self._pause:
+            self._pause -= 1
+            self._set(self._pause == 0)
+
+    def stop(self) -> None:
+        self._pause = 0
+        self._set(False)
