@@ -1,0 +1,204 @@
+"""Set-up: what a machine steps equals the exact picture, within the stated widths."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from cardcage.golden import exact, fixed
+from cardcage.golden.display_list import DisplayList, coordinate_bits
+from cardcage.golden.errors import InputError
+from cardcage.golden.setup import (
+    color_word_bits,
+    depth_word_bits,
+    edge_column_bits,
+    edge_remainder_bits,
+    prepare,
+    scene_fraction_bits,
+)
+
+SHIFTS = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2)]
+
+
+def random_list(seed, count=40):
+    """Sizes, sub-pixel bits and kinds of triangles all random, the guard band included."""
+    random = np.random.default_rng(seed)
+    width, height = (int(size) for size in random.integers(1, 24, 2))
+    sub_bits = int(random.integers(1, 9))
+    limit = 1 << (coordinate_bits(width, height, sub_bits) - 1)
+    anywhere = random.integers(-limit, limit, (count, 3, 2))
+    lattice = random.integers(0, 2 * max(width, height), (count, 3, 2)) << (sub_bits - 1)
+    small = anywhere[:, :1] // 4 + random.integers(-(2**sub_bits), 2**sub_bits, (count, 3, 2))
+    kind = random.integers(0, 3, count)
+    position = np.choose(kind[:, None, None], [anywhere, lattice, small])
+    depth_bits = int(random.integers(2, 33))
+    return DisplayList(
+        width=width,
+        height=height,
+        position=np.clip(position, -limit, limit - 1).astype(np.int32),
+        depth=random.integers(0, 2**depth_bits - 1, (count, 3)),
+        color=random.integers(0, 256, (count, 3, 3), np.uint8),
+        sub_bits=sub_bits,
+        depth_bits=depth_bits,
+    )
+
+
+def stepped_columns(edges, triangle, rows, bits):
+    """The column on each of ``rows`` rows, as hardware of ``bits`` bits steps it."""
+    column, remainder = int(edges.column[triangle]), int(edges.remainder[triangle])
+    denominator = int(edges.denominator[triangle])
+    columns = []
+    for _ in range(rows):
+        columns.append(fixed.to_signed(column, bits))
+        column += fixed.wrap(int(edges.column_step[triangle]), bits)
+        remainder += int(edges.remainder_step[triangle])
+        if remainder >= denominator:
+            remainder -= denominator
+            column += 1
+    return columns
+
+
+def spans_of(prepared, triangle, bits):
+    """(row, first, beyond) from the three edges."""
+    top, middle, bottom = (int(getattr(prepared, name)[triangle])
+                           for name in ("top", "middle", "bottom"))
+    long = stepped_columns(prepared.long, triangle, bottom - top, bits)
+    short = stepped_columns(prepared.upper, triangle, middle - top, bits)
+    short += stepped_columns(prepared.lower, triangle, bottom - middle, bits)
+    low, high = int(prepared.left[triangle]), int(prepared.right[triangle])
+    for row, one, other in zip(range(top, bottom), long, short, strict=True):
+        first, beyond = (one, other) if prepared.long_edge_left[triangle] else (other, one)
+        yield row, first, beyond, max(first, low), min(beyond, high)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_stepped_edges_cover_exactly(seed):
+    display_list = random_list(seed)
+    x_shift, y_shift = SHIFTS[seed % len(SHIFTS)]
+    bits = edge_column_bits(display_list.coordinate_bits, display_list.sub_bits)
+    prepared = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
+    covered = set()
+    for triangle, primitive in enumerate(prepared.primitive.tolist()):
+        for row, first, beyond, held_first, held_beyond in spans_of(prepared, triangle, bits):
+            screen = range(max(first, 0), min(beyond, prepared.grid.width))
+            assert list(screen) == list(range(held_first, held_beyond)), "the box cuts pixels off"
+            covered |= {(primitive, column, row) for column in screen}
+    fragments = exact.fragments(display_list, x_shift=x_shift, y_shift=y_shift)
+    expected = set(zip(*(getattr(fragments, name).tolist() for name in ("primitive", "x", "y")),
+                       strict=True))
+    assert covered == expected
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_planes_are_rounded_and_wrapped(seed):
+    """Start and increments are the rational ones to half a unit of 2**-F, modulo the word."""
+    display_list = random_list(seed + 100, count=10)
+    fraction_bits = seed * 2
+    prepared = prepare(display_list, fraction_bits=fraction_bits)
+    size = display_list.width, display_list.height
+    assert prepared.depth.word_bits == depth_word_bits(display_list.depth_bits, fraction_bits,
+                                                       *size)
+    channels = [(prepared.depth, display_list.depth)]
+    channels += [(planes, display_list.color[:, :, channel].astype(np.int64))
+                 for channel, planes in enumerate(prepared.color)]
+    assert channels[1][0].word_bits == color_word_bits(fraction_bits, *size)
+    unit = 1 << display_list.sub_bits
+    for triangle, primitive in enumerate(prepared.primitive.tolist()):
+        (x0, y0), (x1, y1), (x2, y2) = display_list.position[primitive].tolist()
+        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        x = int(prepared.left[triangle]) * unit + unit // 2 - x0
+        y = int(prepared.top[triangle]) * unit + unit // 2 - y0
+        for planes, values in channels:
+            v0, v1, v2 = values[primitive].tolist()
+            slope_x = Fraction((v1 - v0) * (y2 - y0) - (v2 - v0) * (y1 - y0), area)
+            slope_y = Fraction((v2 - v0) * (x1 - x0) - (v1 - v0) * (x2 - x0), area)
+            doubled = 2 * abs(area)
+            carried = v0 + slope_x * x + slope_y * y + Fraction(abs(area) // 2 * 2 + 1, doubled)
+            for stored, value in ((planes.start, carried), (planes.step_x, slope_x * unit),
+                                  (planes.step_y, slope_y * unit)):
+                rounded = (value * 2**fraction_bits + Fraction(1, 2)).__floor__()
+                assert type(stored[triangle]) is int
+                assert stored[triangle] == rounded % 2**planes.word_bits
+
+
+@pytest.mark.parametrize("shifts", SHIFTS)
+def test_numbers_fit_the_stated_widths(shifts):
+    """Guard-band extremes: edges along the whole range, steep, shallow and one unit high."""
+    for sub_bits in (1, 2, 8):
+        limit = 1 << (coordinate_bits(20, 20, sub_bits) - 1)
+        ends = [-limit, -limit + 1, 0, 1, limit - 2, limit - 1]
+        corners = np.array([[x, y] for x in ends for y in ends])
+        random = np.random.default_rng(sub_bits)
+        position = corners[random.integers(0, len(corners), (2000, 3))].astype(np.int32)
+        display_list = DisplayList(20, 20, position, np.zeros((2000, 3), np.int64),
+                                   np.zeros((2000, 3, 3), np.uint8), sub_bits=sub_bits)
+        prepared = prepare(display_list, fraction_bits=0, x_shift=shifts[0], y_shift=shifts[1])
+        remainder_limit = 1 << edge_remainder_bits(display_list.coordinate_bits)
+        column_limit = 1 << (edge_column_bits(display_list.coordinate_bits, sub_bits) - 1)
+        parts = ((prepared.long, prepared.top, prepared.bottom),
+                 (prepared.upper, prepared.top, prepared.middle),
+                 (prepared.lower, prepared.middle, prepared.bottom))
+        for edges, begin, end in parts:
+            used = end > begin
+            assert ((edges.remainder >= 0) & (edges.remainder < edges.denominator)).all()
+            assert ((edges.remainder_step >= 0) & (edges.remainder_step < edges.denominator)).all()
+            assert (edges.denominator < remainder_limit).all()
+            last = np.maximum(end - begin - 1, 0)
+            steps = (edges.remainder + last * edges.remainder_step) // edges.denominator
+            for column in (edges.column, edges.column + last * edges.column_step + steps):
+                assert ((column >= -column_limit) & (column < column_limit))[used].all()
+            unused = [edges.column, edges.remainder, edges.column_step, edges.remainder_step]
+            assert all((part[~used] == 0).all() for part in unused)
+            assert (edges.denominator[~used] == 1).all()
+
+
+def test_what_cannot_cover_a_pixel_is_left_out():
+    position = np.array([
+        [[0, 0], [256, 0], [0, 256]],  # covers the first pixel
+        [[0, 0], [512, 512], [1024, 1024]],  # no area
+        [[129, 129], [380, 129], [129, 380]],  # between centres
+        [[-512, 0], [-256, 0], [-512, 512]],  # left of the screen
+        [[0, 1024], [256, 1024], [0, 1300]],  # below it
+        [[256, 256], [1024, 256], [256, 1024]],
+    ], np.int32)  # fmt: skip
+    display_list = DisplayList(4, 4, position, np.zeros((6, 3), np.int64),
+                               np.zeros((6, 3, 3), np.uint8))
+    prepared = prepare(display_list, fraction_bits=4)
+    assert prepared.primitive.tolist() == [0, 5]
+    assert prepared.primitive.dtype == np.int32
+    assert len(prepared) == 2
+
+
+def test_flat_shading_takes_the_first_vertex():
+    display_list = random_list(3)
+    prepared = prepare(display_list, fraction_bits=4, shading="flat")
+    assert prepared.color is None
+    assert np.array_equal(prepared.flat_color, display_list.color[prepared.primitive, 0])
+
+
+def test_scene_fraction_bits_are_those_of_the_worst_triangle():
+    position = np.array([[[0, 0], [1024, 0], [0, 1024]], [[0, 0], [300, 0], [0, 300]]], np.int32)
+    display_list = DisplayList(8, 8, position, np.zeros((2, 3), np.int64),
+                               np.zeros((2, 3, 3), np.uint8))
+    # Columns 0 … 3 and rows 0 … 3: x + y is 6 at the far corner.
+    assert scene_fraction_bits(display_list) == (1024 * 1024 * 7).bit_length()
+    assert scene_fraction_bits(display_list, x_shift=1, y_shift=2) == (1024 * 1024 * 2).bit_length()
+
+
+def test_empty_list():
+    display_list = DisplayList(4, 4, np.zeros((0, 3, 2), np.int32), np.zeros((0, 3), np.int64),
+                               np.zeros((0, 3, 3), np.uint8))
+    assert len(prepare(display_list, fraction_bits=4)) == 0
+    assert scene_fraction_bits(display_list) == 0
+
+
+@pytest.mark.parametrize(("arguments", "word"), [
+    ({"fraction_bits": 65}, "fraction bits"),
+    ({"fraction_bits": -1}, "fraction bits"),
+    ({"fraction_bits": 4, "shading": "phong"}, "shading"),
+    ({"fraction_bits": 4, "x_shift": 1}, "resolution"),
+    ({"fraction_bits": 4, "y_shift": 2}, "resolution"),
+    ({"fraction_bits": 4, "x_shift": -1, "y_shift": -1}, "resolution"),
+])  # fmt: skip
+def test_bad_input(arguments, word):
+    with pytest.raises(InputError, match=word):
+        prepare(random_list(0), **arguments)
