@@ -65,6 +65,8 @@ def _check_readable(source: Path) -> None:
             empty = not file.read(1)
     except FileNotFoundError:
         raise InputError(f"{source}: file: no such file; check the path") from None
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise InputError(f"{source}: file: cannot be read ({_reason(error)})") from None
     if empty:

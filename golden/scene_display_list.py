@@ -98,14 +98,16 @@ def display_list_of_mesh(
 ) -> DisplayList:
     """Transform, light, clip, project and quantise a mesh, in the order of its faces.
 
-    What lies wholly outside the screen or before the near plane is left out;
-    what remains of a clipped face takes its place.
+    Left out is what has no area (rounded to the grid it could gain some) and
+    what lies wholly outside the screen or before the near plane; what remains
+    of a clipped face takes its place.
     """
     view = framing_camera(mesh) if camera is None else camera
     colors = lit_corners(mesh, view, shading, lighting)
     homogeneous = transform(view.matrix(picture, mesh.vertices[np.unique(mesh.faces)]),
                             mesh.vertices)
-    clipped = clip(np.concatenate([homogeneous[mesh.faces], colors], axis=2), picture).corners
+    corners = np.concatenate([homogeneous[mesh.faces], colors], axis=2)
+    clipped = clip(corners[~mesh.degenerate()], picture).corners
     position = quantise_positions(clipped[..., :4], picture)
     depth = quantise_depths(clipped[..., :4], picture)
     color = quantise_colors(clipped[..., 4:])

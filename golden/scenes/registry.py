@@ -132,7 +132,7 @@ BUILT_INS: Final[dict[str, BuiltIn]] = {
         BuiltIn(
             "teapot",
             "the Utah teapot from its 32 Bézier patches (Newell 1975)",
-            (Parameter("tessellation", 4, 1, 128, "steps along the side of a patch"),),
+            (Parameter("tessellation", 4, 2, 128, "steps along the side of a patch"),),
             teapot_triangles,
             teapot,
         ),
@@ -211,7 +211,7 @@ def parse_scene(scene: str | Path) -> Scene:
     if built_in is not None:
         return _built_in_scene(scene, built_in, arguments if colon else None)
     # A path by its looks: the reader of files says what is wrong with it.
-    if "/" in name or path.suffix[1:].isalpha() or _exists(path):
+    if "/" in name or path.suffix[1:].isalpha() or (name and _exists(path)):
         return MeshFileScene(path)
     near = difflib.get_close_matches(name.lower(), BUILT_INS, n=1, cutoff=0.5)
     hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(BUILT_INS)}"

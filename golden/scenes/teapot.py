@@ -150,6 +150,9 @@ def _evaluated(
     """Points and unit normals (patches, steps + 1, steps + 1, 3) on a grid of parameters."""
     basis, slope = _bernstein(steps)
     along = _blend(patches.swapaxes(1, 2), basis).swapaxes(1, 2)  # (p, 4, steps + 1, 3)
+    # A coordinate that is constant along a row stays so exactly: a pole must be one point.
+    level = (patches == patches[:, :, :1]).all(axis=2, keepdims=True)
+    along = np.where(level, patches[:, :, :1], along)
     along_slope = _blend(patches.swapaxes(1, 2), slope).swapaxes(1, 2)
     points = _blend(along, basis)
     down = _blend(along, slope)
