@@ -186,10 +186,10 @@ class _HalfPlane:
         value = run * (centre_y - y[begin]) - fall * (centre_x - x[begin])
         # Upwards is a left edge, which belongs to the triangle; downwards a
         # right one, which does not.  Level edges are top or bottom: the rows of
-        # the box already keep the one and leave out the other.
+        # the box already keep the one and leave out the other, so it bounds nothing.
         level = fall == 0
         return cls(
-            value=np.where(level, never - 1, value - (fall > 0)),
+            value=np.where(level, 0, value - (fall > 0)),
             step_x=np.where(level, 1, abs(fall) * grid.unit_x),
             step_y=np.where(level, 0, run * grid.unit_y),
             not_left=np.where(fall < 0, 0, never),

@@ -175,6 +175,18 @@ def test_flat_shading_takes_the_first_vertex():
     assert np.array_equal(prepared.flat_color, display_list.color[prepared.primitive, 0])
 
 
+def test_words_are_as_wide_at_every_resolution():
+    """A machine that lost memory units keeps the registers it was built with."""
+    position = np.array([[[0, 0], [131000, 0], [0, 131000]]], np.int32)
+    display_list = DisplayList(512, 512, position, np.zeros((1, 3), np.int64),
+                               np.zeros((1, 3, 3), np.uint8))
+    for shifts in SHIFTS:
+        prepared = prepare(display_list, fraction_bits=0, x_shift=shifts[0], y_shift=shifts[1])
+        # 256 + (1 + 1022) / 2 + 1 needs a third guard bit; a quarter of the pixels would not.
+        assert [planes.word_bits for planes in prepared.color] == [8 + 3] * 3
+        assert prepared.depth.word_bits == 24 + 2
+
+
 def test_scene_fraction_bits_are_those_of_the_worst_triangle():
     position = np.array([[[0, 0], [1024, 0], [0, 1024]], [[0, 0], [300, 0], [0, 300]]], np.int32)
     display_list = DisplayList(8, 8, position, np.zeros((2, 3), np.int64),
