@@ -96,7 +96,8 @@ def _clip_plane(
     next_point = np.take_along_axis(polygons, following[..., None], axis=1)
     next_distance = np.take_along_axis(distance, following, axis=1)
     inside, next_inside = distance >= 0.0, next_distance >= 0.0
-    crosses = exists & (inside != next_inside)
+    # A point on the plane itself is kept and ends its edge: nothing to compute.
+    crosses = exists & (inside != next_inside) & (distance != 0.0) & (next_distance != 0.0)
 
     # Each point may be followed by the crossing on the edge that it begins.
     found = np.stack([exists & inside, crosses], axis=2).reshape(rows, 2 * slots)

@@ -4,9 +4,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
 from cardcage.golden.clipping import clip, intersections
 from cardcage.golden.quantise import (
     PictureFormat,
@@ -15,6 +12,8 @@ from cardcage.golden.quantise import (
     quantise_positions,
     round_half_up,
 )
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 PICTURE = PictureFormat(64, 48)
 BAND = PICTURE.guard_band
@@ -131,13 +130,22 @@ vertex = st.builds(lambda x, y, z, w: (x * w, y * w, z * w, w, x), coordinate, c
                    weight)
 
 
-@given(vertex, vertex, vertex, vertex)
+# Multiples of 1/64 and 1/1024, so that no share of an edge is rounded to all of it.
+tame_vertex = st.builds(
+    lambda x, y, z, w: (x * w / 4096, y * w / 4096, z * w / 65536, w / 64),
+    st.integers(-4096, 4096), st.integers(-4096, 4096), st.integers(-1024, 1024),
+    st.integers(1, 640),
+)  # fmt: skip
+
+
+@settings(deadline=None)
+@given(tame_vertex, tame_vertex, tame_vertex, tame_vertex)
 def test_neighbours_share_every_vertex_on_their_edge(a, b, c, d):
     """Clip a triangle on each side of the edge a b: the same bits appear on that edge."""
     picture = PictureFormat(8, 8)  # a narrow band: nearly everything crosses it
     # The colour marks the vertices that lie on the edge: 0 at a and b, positive elsewhere.
-    one = np.array([[(*a[:4], 0.0), (*b[:4], 0.0), (*c[:4], 1.0)]])
-    two = np.array([[(*b[:4], 0.0), (*a[:4], 0.0), (*d[:4], 1.0)]])
+    one = np.array([[(*a, 0.0), (*b, 0.0), (*c, 1.0)]])
+    two = np.array([[(*b, 0.0), (*a, 0.0), (*d, 1.0)]])
     left = [clip(triangle, picture).corners.reshape(-1, 5) for triangle in (one, two)]
     on_edge = [{tuple(p) for p in points[points[:, 4] == 0.0].tolist()} for points in left]
     # One of them may lie outside the screen altogether; otherwise they must agree.
@@ -145,6 +153,7 @@ def test_neighbours_share_every_vertex_on_their_edge(a, b, c, d):
         assert on_edge[0] == on_edge[1]
 
 
+@settings(deadline=None)
 @given(vertex, vertex)
 def test_an_intersection_has_no_direction(a, b):
     start, end = np.array([a]), np.array([b])
@@ -153,7 +162,7 @@ def test_an_intersection_has_no_direction(a, b):
     assert np.array_equal(one, two)
 
 
-@settings(max_examples=150)
+@settings(deadline=None)
 @given(st.tuples(coordinate, coordinate), st.tuples(coordinate, coordinate),
        st.tuples(coordinate, coordinate))
 def test_clipped_area_is_the_exact_area(a, b, c):
@@ -169,6 +178,7 @@ def test_clipped_area_is_the_exact_area(a, b, c):
         assert exact_clip_area((a, b, c), Fraction(0), Fraction(48)) == 0  # nothing on the screen
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(vertex, vertex, vertex), min_size=1, max_size=8))
 def test_what_comes_out_fits_the_grid(triangles):
     result = clip(np.array(triangles), PICTURE)

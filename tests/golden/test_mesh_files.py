@@ -7,7 +7,6 @@ import logging
 import numpy as np
 import pytest
 import trimesh
-
 from cardcage.golden.errors import InputError
 from cardcage.golden.mesh import BASE_COLOR, UP_Y, UP_Z, Mesh, corner_normals, face_normals
 from cardcage.golden.mesh_files import MESH_EXTENSIONS, load_mesh
@@ -34,9 +33,8 @@ def plain():
 
 
 def same(a, b):
-    return all(
-        np.array_equal(getattr(a, name), getattr(b, name)) for name in ("position", "depth", "color")
-    )
+    names = ("position", "depth", "color")
+    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in names)
 
 
 @pytest.mark.parametrize("shading", ["flat", "gouraud"])

@@ -5,9 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
 from cardcage.golden.errors import InputError
 from cardcage.golden.mesh import Mesh, corner_normals, cross, dot, edge_vectors, face_normals
 from cardcage.golden.quantise import PictureFormat
@@ -26,6 +23,8 @@ from cardcage.golden.scenes.sphereflake import child_directions, sphereflake, sp
 from cardcage.golden.scenes.spheres import spheres
 from cardcage.golden.scenes.teapot import teapot, teapot_parts
 from cardcage.golden.scenes.tetra import tetra
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 
 def directed_edges(faces):
@@ -296,6 +295,7 @@ def test_files_are_told_from_names(tmp_path, monkeypatch):
     assert parse_scene("dragon") == MeshFileScene(Path("dragon"))
 
 
+@settings(deadline=None)
 @given(st.text(max_size=40) | st.builds("{}:{}".format, st.sampled_from([*BUILT_INS]), st.text()))
 def test_any_text_is_a_scene_or_an_input_error(text):
     try:
