@@ -16,61 +16,79 @@
 """
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
 from .layouts import broadcast_layout, response_layout
 
-__all__ = ["BroadcastLines", "Connector", "Lane", "ProcessingElementLines", "ScanLines"]
+__all__ = [
+    "BroadcastLines",
+    "Connector",
+    "Lane",
+    "ProcessingElementLines",
+    "ScanLines",
+    "read_request_layout",
+    "scan_address_layout",
+    "write_request_layout",
+]
 
 
 class Lane:
-    """Bits of ``write_lanes``: which parts of a word a write changes."""
+    """Bits of a write request's ``lanes``: which parts of a word a write changes."""
 
     DEPTH = 0b001
     BACK = 0b010
     FRONT = 0b100
 
 
+def read_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Read the depth at an address of a unit."""
+    return data.StructLayout({
+        "valid": 1,
+        "unit": configuration.id_bits,
+        "address": configuration.address_bits,
+    })
+
+
+def write_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Write the ``lanes`` of a word in one unit, or in ``every`` unit of the domain."""
+    return data.StructLayout({
+        "valid": 1,
+        "every": 1,
+        "unit": configuration.id_bits,
+        "address": configuration.address_bits,
+        "lanes": 3,
+        "depth": configuration.depth_bits,
+        "color": 3 * CHANNEL_BITS,
+    })
+
+
 class ProcessingElementLines(wiring.Signature):
     """The bus of one processing element to the memory units of its domain (figure 12).
 
     A read and a write can go to two different units in the same clock.  Each
-    takes place in a clock in which its ``valid`` is high and its ``busy`` is
-    low; a request that no unit answers is never busy.  ``busy`` never depends
-    on the same request's own ``valid`` being taken.
+    takes place in a clock in which its ``valid`` is high and its busy line is
+    low; a request that no unit answers is never busy.
 
     Members
     -------
-    read_valid, read_unit, read_address: Out
-        Read the depth at an address of a unit.
+    read: Out(read_request_layout)
     read_busy: In(1)
         The unit's port is taken by the scan or by a write.
     read_data: In(depth_bits)
         Depth, in the clock after the read; 0 when no unit answered.
-    write_valid, write_unit, write_address, write_lanes, write_depth, write_color: Out
-        Write the lanes named by ``Lane`` bits.
-    write_every: Out(1)
-        The write is for every unit of the domain, whatever ``write_unit`` says.
+    write: Out(write_request_layout)
     write_busy: In(1)
         A unit's port is taken by the scan.
     """
 
     def __init__(self, configuration: MachineConfiguration):
         super().__init__({
-            "read_valid": Out(1),
-            "read_unit": Out(configuration.id_bits),
-            "read_address": Out(configuration.address_bits),
+            "read": Out(read_request_layout(configuration)),
             "read_busy": In(1),
             "read_data": In(configuration.depth_bits),
-            "write_valid": Out(1),
-            "write_every": Out(1),
-            "write_unit": Out(configuration.id_bits),
-            "write_address": Out(configuration.address_bits),
-            "write_lanes": Out(3),
-            "write_depth": Out(configuration.depth_bits),
-            "write_color": Out(3 * CHANNEL_BITS),
+            "write": Out(write_request_layout(configuration)),
             "write_busy": In(1),
         })
 
@@ -120,17 +138,24 @@ class BroadcastLines(wiring.Signature):
         })
 
 
+def scan_address_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A pixel at the highest resolution; ``valid`` is high in the first clock of its time."""
+    return data.StructLayout({
+        "valid": 1,
+        "x": configuration.x_bits,
+        "y": configuration.y_bits,
+    })
+
+
 class ScanLines(wiring.Signature):
     """The video scan generator's lines to every memory unit (figures 6 to 9).
 
     Members
     -------
-    fetch: Out(1)
-        This clock announces a scan slot: a unit whose pixel is due reads it in the next clock.
-    fetch_x, fetch_y: Out
-        The pixel to fetch, at the highest resolution.
-    show_x, show_y: Out
-        The pixel on the video bus: ``fetch_x``, ``fetch_y`` of three clocks ago.
+    fetch: Out(scan_address_layout)
+        Announces a scan slot: a unit whose pixel is due reads it in the next clock.
+    show: Out(scan_address_layout)
+        The pixel on the video bus: ``fetch`` of three clocks ago.
     video: In(24)
         Red in the low byte, then green, blue: from the unit that holds the shown pixel, others
         drive 0 (wired or).
@@ -138,10 +163,7 @@ class ScanLines(wiring.Signature):
 
     def __init__(self, configuration: MachineConfiguration):
         super().__init__({
-            "fetch": Out(1),
-            "fetch_x": Out(configuration.x_bits),
-            "fetch_y": Out(configuration.y_bits),
-            "show_x": Out(configuration.x_bits),
-            "show_y": Out(configuration.y_bits),
+            "fetch": Out(scan_address_layout(configuration)),
+            "show": Out(scan_address_layout(configuration)),
             "video": In(3 * CHANNEL_BITS),
         })

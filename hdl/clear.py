@@ -45,11 +45,11 @@ class Clear(wiring.Component):
         memory = self.memory
         address = Signal(self.configuration.address_bits)
         m.d.comb += [
-            memory.write_every.eq(1),
-            memory.write_address.eq(address),
-            memory.write_depth.eq(self.configuration.depth_background),
-            memory.write_color.eq(self.color),
-            memory.write_lanes.eq(Mux(self.front, Lane.DEPTH | Lane.BACK | Lane.FRONT,
+            memory.write.every.eq(1),
+            memory.write.address.eq(address),
+            memory.write.depth.eq(self.configuration.depth_background),
+            memory.write.color.eq(self.color),
+            memory.write.lanes.eq(Mux(self.front, Lane.DEPTH | Lane.BACK | Lane.FRONT,
                                       Lane.DEPTH | Lane.BACK)),
         ]
         with m.FSM():
@@ -57,7 +57,7 @@ class Clear(wiring.Component):
                 m.d.sync += address.eq(0)
                 m.next = "WRITE"
             with m.State("WRITE"):
-                m.d.comb += memory.write_valid.eq(1)
+                m.d.comb += memory.write.valid.eq(1)
                 with m.If(~memory.write_busy):
                     m.d.sync += address.eq(address + 1)
                     with m.If(address + 1 >= self.words):

@@ -60,9 +60,9 @@ class DepthTest(wiring.Component):
         compare_moves = ~comparing | write_moves
         taken = self.fragments.valid & self.fragments.ready
         m.d.comb += [
-            memory.read_valid.eq(self.fragments.valid & compare_moves),
-            memory.read_unit.eq(fragment.unit),
-            memory.read_address.eq(fragment.address),
+            memory.read.valid.eq(self.fragments.valid & compare_moves),
+            memory.read.unit.eq(fragment.unit),
+            memory.read.address.eq(fragment.address),
             self.fragments.ready.eq(compare_moves & ~memory.read_busy),
             same_pixel.eq(winning & (write.unit == compare.unit)
                           & (write.address == compare.address)),
@@ -81,11 +81,11 @@ class DepthTest(wiring.Component):
                 write.eq(compare),
             ]
         m.d.comb += [
-            memory.write_valid.eq(winning),
-            memory.write_unit.eq(write.unit),
-            memory.write_address.eq(write.address),
-            memory.write_depth.eq(write.depth),
-            memory.write_color.eq(write.color),
-            memory.write_lanes.eq(Lane.DEPTH | Lane.BACK),
+            memory.write.valid.eq(winning),
+            memory.write.unit.eq(write.unit),
+            memory.write.address.eq(write.address),
+            memory.write.depth.eq(write.depth),
+            memory.write.color.eq(write.color),
+            memory.write.lanes.eq(Lane.DEPTH | Lane.BACK),
         ]
         return m

@@ -15,6 +15,7 @@ from .layouts import response_layout
 from .memory_unit import MemoryUnit
 from .processing_element import ProcessingElement
 from .video_scan_generator import VideoPins, VideoScanGenerator
+from .wires import wires
 
 __all__ = ["Machine"]
 
@@ -65,31 +66,41 @@ class Machine(wiring.Component):
             m.submodules[f"slot_{slot}_{kind}"] = card
 
         wiring.connect(m, controller.commands, wiring.flipped(self.commands))
-        wiring.connect(m, controller.responses, wiring.flipped(self.responses))
-        wiring.connect(m, generator.pins, wiring.flipped(self.pins))
+        pins = wires(m, "pin_wires")
+        wiring.connect(pins, controller.responses, wiring.flipped(self.responses))
+        wiring.connect(pins, generator.pins, wiring.flipped(self.pins))
         left = controller
-        for card in self.cards:
-            wiring.connect(m, left.right, card.left)
+        for slot, card in enumerate(self.cards):
+            wiring.connect(wires(m, f"slot_{slot}_wires"), left.right, card.left)
             left = card
-        total = left.right.id
-        m.d.comb += [
-            controller.total.eq(total),
-            controller.scan_start.eq(generator.start),
-            controller.broadcast.ready.eq(
-                reduce(and_, (pe.broadcast.ready for pe in self.processing_elements), C(1))),
-            controller.broadcast.done.eq(
-                reduce(and_, (pe.broadcast.done for pe in self.processing_elements), C(1))),
-            generator.scan.video.eq(
-                reduce(or_, (unit.scan.video for unit in self.memory_units), C(0))),
-        ]
-        for pe in self.processing_elements:
-            m.d.comb += [
-                pe.total.eq(total),
-                pe.broadcast.strobe.eq(controller.broadcast.strobe),
-                pe.broadcast.packet.eq(controller.broadcast.packet),
-            ]
-        for unit in self.memory_units:
-            m.d.comb += [unit.total.eq(total), unit.front.eq(controller.front)]
-            m.d.comb += [getattr(unit.scan, name).eq(getattr(generator.scan, name))
-                         for name in ("fetch", "fetch_x", "fetch_y", "show_x", "show_y")]
+        self._connect_lines_to_all(m, total=left.right.id)
         return m
+
+    def _connect_lines_to_all(self, m, total):
+        controller, generator = self.controller, self.scan_generator
+        fixed, broadcast, scan = (wires(m, f"{name}_wires")
+                                  for name in ("total", "broadcast", "scan"))
+        fixed.d.comb += controller.total.eq(total)
+        fixed.d.comb += [card.total.eq(total) for card in self.cards]
+
+        elements, units = self.processing_elements, self.memory_units
+        broadcast.d.comb += [
+            controller.broadcast.ready.eq(
+                reduce(and_, (element.broadcast.ready for element in elements), C(1))),
+            controller.broadcast.done.eq(
+                reduce(and_, (element.broadcast.done for element in elements), C(1))),
+        ]
+        for element in elements:
+            broadcast.d.comb += [
+                element.broadcast.strobe.eq(controller.broadcast.strobe),
+                element.broadcast.packet.eq(controller.broadcast.packet),
+            ]
+
+        fixed.d.comb += [unit.front.eq(controller.front) for unit in units]
+        scan.d.comb += [
+            controller.scan_start.eq(generator.start),
+            generator.scan.video.eq(reduce(or_, (unit.scan.video for unit in units), C(0))),
+        ]
+        for unit in units:
+            scan.d.comb += [unit.scan.fetch.eq(generator.scan.fetch),
+                            unit.scan.show.eq(generator.scan.show)]

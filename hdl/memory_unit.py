@@ -9,6 +9,7 @@ from .backplane import Connector, Lane, ScanLines
 from .id_increment import IdIncrement
 from .interlace import ScanAddress
 from .one_port_memory import OnePortMemory
+from .wires import wires
 
 __all__ = ["MemoryUnit"]
 
@@ -58,7 +59,8 @@ class MemoryUnit(wiring.Component):
         scan_read, scan_address = self._scan(m, memory, number)
         self._serve(m, memory, number, scan_read, scan_address)
 
-        wiring.connect(m, wiring.flipped(self.left.response), wiring.flipped(self.right.response))
+        wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
+                       wiring.flipped(self.right.response))
         return m
 
     def _scan(self, m, memory, number):
@@ -68,15 +70,15 @@ class MemoryUnit(wiring.Component):
         scan_read, captured = Signal(), Signal()
         scan_address = Signal(self.configuration.address_bits)
         output = Signal.like(self.scan.video)
-        m.d.comb += [
-            fetch.total.eq(self.total), fetch.id.eq(number),
-            fetch.x.eq(self.scan.fetch_x), fetch.y.eq(self.scan.fetch_y),
-            show.total.eq(self.total), show.id.eq(number),
-            show.x.eq(self.scan.show_x), show.y.eq(self.scan.show_y),
-            self.scan.video.eq(Mux(show.selected, output, 0)),
-        ]
+        scan = wires(m, "scan_wires")
+        for address, line in ((fetch, self.scan.fetch), (show, self.scan.show)):
+            scan.d.comb += [
+                address.total.eq(self.total), address.id.eq(number),
+                address.x.eq(line.x), address.y.eq(line.y),
+            ]
+        scan.d.comb += self.scan.video.eq(Mux(show.selected, output, 0))
         m.d.sync += [
-            scan_read.eq(self.scan.fetch & fetch.fetch),
+            scan_read.eq(self.scan.fetch.valid & fetch.fetch),
             scan_address.eq(fetch.address),
             captured.eq(scan_read),
         ]
@@ -86,32 +88,30 @@ class MemoryUnit(wiring.Component):
 
     def _serve(self, m, memory, number, scan_read, scan_address):
         """Scan first, then the processing element's write, then its read."""
-        request, onward = self.left.lines, self.right.lines
+        lines, onward = self.left.lines, self.right.lines
+        write, read = lines.write, lines.read
         write_here, read_here, answered = Signal(), Signal(), Signal()
+        wires(m, "line_wires").d.comb += [onward.write.eq(write), onward.read.eq(read)]
         m.d.comb += [
-            write_here.eq(request.write_valid
-                          & (request.write_every | (request.write_unit == number))),
-            read_here.eq(request.read_valid & (request.read_unit == number)),
-            request.write_busy.eq(onward.write_busy | (write_here & scan_read)),
-            request.read_busy.eq(onward.read_busy | (read_here & (scan_read | write_here))),
-            request.read_data.eq(onward.read_data | Mux(answered, memory.depth, 0)),
-            memory.depth_in.eq(request.write_depth),
-            memory.color_in.eq(request.write_color),
+            write_here.eq(write.valid & (write.every | (write.unit == number))),
+            read_here.eq(read.valid & (read.unit == number)),
+            lines.write_busy.eq(onward.write_busy | (write_here & scan_read)),
+            lines.read_busy.eq(onward.read_busy | (read_here & (scan_read | write_here))),
+            lines.read_data.eq(onward.read_data | Mux(answered, memory.depth, 0)),
+            memory.depth_in.eq(write.depth),
+            memory.color_in.eq(write.color),
         ]
         with m.If(scan_read):
             m.d.comb += [memory.address.eq(scan_address), memory.read.eq(1)]
         with m.Elif(write_here):
-            back = request.write_lanes & Lane.BACK != 0
-            front = request.write_lanes & Lane.FRONT != 0
+            back = write.lanes & Lane.BACK != 0
+            front = write.lanes & Lane.FRONT != 0
             m.d.comb += [
-                memory.address.eq(request.write_address),
-                memory.write_depth.eq(request.write_lanes & Lane.DEPTH != 0),
-                memory.write_color[0].eq(Mux(self.front, back, front)),
-                memory.write_color[1].eq(Mux(self.front, front, back)),
+                memory.address.eq(write.address),
+                memory.write.eq(Cat(write.lanes & Lane.DEPTH != 0,
+                                    Mux(self.front, back, front),
+                                    Mux(self.front, front, back))),
             ]
         with m.Else():
-            m.d.comb += [memory.address.eq(request.read_address), memory.read.eq(read_here)]
+            m.d.comb += [memory.address.eq(read.address), memory.read.eq(read_here)]
         m.d.sync += answered.eq(read_here & ~scan_read & ~write_here)
-        for name in ("read_valid", "read_unit", "read_address", "write_valid", "write_every",
-                     "write_unit", "write_address", "write_lanes", "write_depth", "write_color"):
-            m.d.comb += getattr(onward, name).eq(getattr(request, name))

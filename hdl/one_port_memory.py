@@ -1,7 +1,7 @@
 """The RAM of a memory unit: one port, one access a clock."""
 
 from amaranth.hdl import *
-from amaranth.lib import memory, wiring
+from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import CHANNEL_BITS, MAXIMUM_WORDS
@@ -10,12 +10,10 @@ __all__ = ["OnePortMemory"]
 
 
 class OnePortMemory(wiring.Component):
-    """Depth and two colours a word, behind one address (figure 6).
+    """Three lanes a word, behind one address (figure 6): depth, and two colours.
 
-    One access takes place in each clock: a read when no lane is written, else a
-    write of the lanes named.  The three banks share the address, so that yosys
-    or an ASIC flow may build them as one RAM with write enables.  Contents are
-    unknown after power-on.
+    One access takes place in each clock: a write of the lanes named, or a read
+    when no lane is.  Contents are unknown after power-on.
 
     Latency: one clock from ``address`` to the data.  Throughput: one access a clock.
 
@@ -23,9 +21,9 @@ class OnePortMemory(wiring.Component):
     -------
     address: In(range(words))
     read: In(1)
-        Read the word; data hold until the next read.
-    write_depth, write_color: In(1), In(2)
-        Write enables: the depth, and each of the two colours.
+        Read the word; the data hold until the next read.
+    write: In(3)
+        Write enable of each lane: depth, colour 0, colour 1.
     depth_in, color_in: In
         What is written.
     depth: Out(depth_bits)
@@ -44,14 +42,13 @@ class OnePortMemory(wiring.Component):
         self.words = words
         self.depth_bits = depth_bits
         color_bits = 3 * CHANNEL_BITS
-        self.depth_bank = memory.Memory(shape=unsigned(depth_bits), depth=words, init=[])
-        self.color_banks = [memory.Memory(shape=unsigned(color_bits), depth=words, init=[])
-                            for _ in range(2)]
+        # Lanes of one width, so that it is one RAM with lane enables and not three.
+        lane = unsigned(max(depth_bits, color_bits))
+        self.storage = memory.Memory(shape=data.ArrayLayout(lane, 3), depth=words, init=[])
         super().__init__({
             "address": In(range(max(2, words))),
             "read": In(1),
-            "write_depth": In(1),
-            "write_color": In(2),
+            "write": In(3),
             "depth_in": In(depth_bits),
             "color_in": In(color_bits),
             "depth": Out(depth_bits),
@@ -62,26 +59,21 @@ class OnePortMemory(wiring.Component):
     def latency(self) -> int:
         return 1
 
-    @property
-    def banks(self) -> list[memory.Memory]:
-        return [self.depth_bank, *self.color_banks]
-
     def elaborate(self, platform):
         m = Module()
-        ports = [(self.depth_bank, self.write_depth, self.depth_in, self.depth)]
-        ports += [(bank, self.write_color[index], self.color_in, self.color[index])
-                  for index, bank in enumerate(self.color_banks)]
-        writing = self.write_depth | self.write_color.any()
-        for index, (bank, enable, data_in, data_out) in enumerate(ports):
-            m.submodules[f"bank_{index}"] = bank
-            write, read = bank.write_port(), bank.read_port()
-            m.d.comb += [
-                write.addr.eq(self.address),
-                write.en.eq(enable),
-                write.data.eq(data_in),
-                read.addr.eq(self.address),
-                # One port: a clock that writes does not read, and the data hold.
-                read.en.eq(self.read & ~writing),
-                data_out.eq(read.data),
-            ]
+        m.submodules.storage = self.storage
+        write, read = self.storage.write_port(granularity=1), self.storage.read_port()
+        m.d.comb += [
+            write.addr.eq(self.address),
+            write.en.eq(self.write),
+            write.data[0].eq(self.depth_in),
+            write.data[1].eq(self.color_in),
+            write.data[2].eq(self.color_in),
+            read.addr.eq(self.address),
+            # One port: a clock that writes does not read, and the data hold.
+            read.en.eq(self.read & ~self.write.any()),
+            self.depth.eq(read.data[0]),
+            self.color[0].eq(read.data[1]),
+            self.color[1].eq(read.data[2]),
+        ]
         return m

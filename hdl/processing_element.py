@@ -11,12 +11,14 @@ from .depth_test import DepthTest
 from .fragment_stepper import FragmentStepper
 from .interlace import PixelAddress
 from .layouts import broadcast_layout
+from .line_selector import LineSelector
 from .processing_element_control import ProcessingElementControl
 from .read_back import ReadBack
 from .response_link import ResponseLink
 from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
+from .wires import wires
 
 __all__ = ["ProcessingElement"]
 
@@ -55,6 +57,7 @@ class ProcessingElement(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        self.depth_test = DepthTest(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
@@ -72,7 +75,7 @@ class ProcessingElement(wiring.Component):
         m.submodules.walker = walker = SpanWalker(configuration=configuration)
         m.submodules.start = start = SpanStart(configuration=configuration)
         m.submodules.stepper = stepper = FragmentStepper(configuration=configuration)
-        m.submodules.depth_test = depth_test = DepthTest(configuration=configuration)
+        m.submodules.depth_test = depth_test = self.depth_test
         m.submodules.survey = survey = Survey(configuration=configuration)
         m.submodules.clear = clear = Clear(configuration=configuration)
         m.submodules.read_back = read_back = ReadBack(configuration=configuration)
@@ -84,71 +87,69 @@ class ProcessingElement(wiring.Component):
             queue.w_en.eq(self.broadcast.strobe),
             queue.w_data.eq(self.broadcast.packet),
             self.broadcast.ready.eq(queue.w_rdy),
+        ]
+        operations = wires(m, "operation_wires")
+        operations.d.comb += [
             control.operations.valid.eq(queue.r_rdy),
             control.operations.payload.eq(queue.r_data),
             queue.r_en.eq(control.operations.ready),
         ]
+        wiring.connect(operations, control.triangles, walker.triangles)
 
         # The drawing pipeline.
-        wiring.connect(m, control.triangles, walker.triangles)
-        wiring.connect(m, walker.spans, start.spans)
-        wiring.connect(m, start.started, stepper.started)
-        wiring.connect(m, stepper.fragments, depth_test.fragments)
-        m.d.comb += control.drawing.eq(start.busy | stepper.busy | depth_test.busy)
+        drawing = wires(m, "drawing_wires")
+        wiring.connect(drawing, walker.spans, start.spans)
+        wiring.connect(drawing, start.started, stepper.started)
+        wiring.connect(drawing, stepper.fragments, depth_test.fragments)
+        drawing.d.comb += control.drawing.eq(start.busy | stepper.busy | depth_test.busy)
 
         # The domain: first unit from the lines, upper end from the survey.
-        first = self.left.id
+        first, end = self.left.id, survey.end
         body = control.operations.payload.body.clear
-        m.d.comb += [
-            self.right.id.eq(first),
-            picture.total.eq(self.total),
-            walker.total.eq(self.total), walker.first.eq(first), walker.end.eq(survey.end),
-            stepper.total.eq(self.total),
-            survey.total.eq(self.total), survey.first.eq(first),
-            survey.start.eq(control.survey_start), control.survey_done.eq(survey.done),
-            clear.words.eq(picture.words), clear.front.eq(body.front),
-            clear.color.eq(Cat(body.red, body.green, body.blue)),
-            clear.start.eq(control.clear_start), control.clear_done.eq(clear.done),
-            read_back.words.eq(picture.words),
-            read_back.first.eq(first), read_back.end.eq(survey.end),
-            read_back.start.eq(control.read_back_start),
-            control.read_back_done.eq(read_back.done),
-            control.first.eq(first), control.end.eq(survey.end),
-        ]
-        wiring.connect(m, read_back.depths, control.depths)
+        domain = wires(m, "domain_wires")
+        domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total)]
+        for part in (walker, stepper, survey):
+            domain.d.comb += part.total.eq(self.total)
+        for part in (walker, survey, read_back, control):
+            domain.d.comb += part.first.eq(first)
+        for part in (walker, read_back, control):
+            domain.d.comb += part.end.eq(end)
+        for part in (clear, read_back):
+            domain.d.comb += part.words.eq(picture.words)
 
-        self._drive_lines(m, [(control.surveying, survey.memory),
-                              (control.clearing, clear.memory),
-                              (control.reading, read_back.memory),
-                              (None, depth_test.memory)])
+        # The services, and who has the memory lines.
+        service = wires(m, "service_wires")
+        service.d.comb += [
+            clear.front.eq(body.front),
+            clear.color.eq(Cat(body.red, body.green, body.blue)),
+        ]
+        for name, part in (("survey", survey), ("clear", clear), ("read_back", read_back)):
+            service.d.comb += [
+                part.start.eq(getattr(control, f"{name}_start")),
+                getattr(control, f"{name}_done").eq(part.done),
+            ]
+        wiring.connect(service, read_back.depths, control.depths)
+        users = (survey, clear, read_back, depth_test)
+        m.submodules.selector = selector = LineSelector(configuration=configuration,
+                                                        sources=len(users))
+        service.d.comb += selector.select.eq(
+            Cat(control.surveying, control.clearing, control.reading))
+        lines = wires(m, "line_wires")
+        for user, source in zip(users, selector.sources, strict=True):
+            wiring.connect(lines, user.memory, source)
+        wiring.connect(lines, selector.lines, wiring.flipped(self.right.lines))
         self._count(m, control, depth_test)
 
-        wiring.connect(m, control.responses, link.own)
-        wiring.connect(m, wiring.flipped(self.right.response), link.right)
-        wiring.connect(m, link.left, wiring.flipped(self.left.response))
+        responses = wires(m, "response_wires")
+        wiring.connect(responses, control.responses, link.own)
+        wiring.connect(responses, wiring.flipped(self.right.response), link.right)
+        wiring.connect(responses, link.left, wiring.flipped(self.left.response))
         quiet = (queue.level == 0) & control.idle
-        m.d.comb += [
+        responses.d.comb += [
             link.own_turn.eq(~quiet),
             self.broadcast.done.eq(quiet & ~link.left.valid),
         ]
         return m
-
-    def _drive_lines(self, m, sources):
-        """Connect the memory lines to whoever control gives them; the last has them otherwise."""
-        lines = self.right.lines
-        requests = [name for name in lines.signature.members
-                    if lines.signature.members[name].flow == Out]
-        for _, source in sources:
-            m.d.comb += [
-                source.read_busy.eq(lines.read_busy),
-                source.read_data.eq(lines.read_data),
-                source.write_busy.eq(lines.write_busy),
-            ]
-        chosen = m.If
-        for select, source in sources:
-            with m.Else() if select is None else chosen(select):
-                m.d.comb += [getattr(lines, name).eq(getattr(source, name)) for name in requests]
-            chosen = m.Elif
 
     def _count(self, m, control, depth_test):
         """Work since the frame start, whose clear also restarts the counts."""
@@ -156,7 +157,7 @@ class ProcessingElement(wiring.Component):
         taken = depth_test.fragments.valid & depth_test.fragments.ready
         m.d.sync += [
             fragments.eq(fragments + taken),
-            busy_cycles.eq(busy_cycles + ~control.idle),
+            busy_cycles.eq(busy_cycles + control.working),
         ]
         with m.If(control.clear_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]

@@ -37,6 +37,8 @@ class ProcessingElementControl(wiring.Component):
     responses: Out(stream of response_layout)
     idle: Out(1)
         No operation here or in the datapath.
+    working: Out(1)
+        Drawing or clearing: what counts as a busy cycle.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -57,6 +59,7 @@ class ProcessingElementControl(wiring.Component):
             "busy_cycles": In(32),
             "responses": Out(stream.Signature(response_layout())),
             "idle": Out(1),
+            "working": Out(1),
         })
 
     def elaborate(self, platform):
@@ -88,6 +91,7 @@ class ProcessingElementControl(wiring.Component):
                     self.triangles.valid.eq(operations.valid & is_draw),
                     operations.ready.eq(self.triangles.ready & is_draw),
                     self.idle.eq(~operations.valid & ~self.drawing),
+                    self.working.eq(self.triangles.valid | self.drawing),
                 ]
                 with m.If(operations.valid & ~is_draw & ~self.drawing), m.Switch(operation):
                     with m.Case(Operation.SURVEY):
@@ -112,7 +116,7 @@ class ProcessingElementControl(wiring.Component):
                 m.d.comb += units.eq(self.end - self.first)
                 report(ResponseKind.DOMAIN, Cat(units, self.first), finish)
             with m.State("CLEAR"):
-                m.d.comb += self.clearing.eq(1)
+                m.d.comb += [self.clearing.eq(1), self.working.eq(1)]
                 with m.If(self.clear_done):
                     finish()
             with m.State("READ_BACK"):

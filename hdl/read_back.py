@@ -53,11 +53,11 @@ class ReadBack(wiring.Component):
         held = Signal.like(memory.read_data)
         free = ~depths.valid | depths.ready
         m.d.comb += [
-            memory.read_unit.eq(unit),
-            memory.read_address.eq(address),
+            memory.read.unit.eq(unit),
+            memory.read.address.eq(address),
             depths.payload.eq(Mux(fresh, memory.read_data, held)),
         ]
-        read = memory.read_valid & ~memory.read_busy
+        read = memory.read.valid & ~memory.read_busy
         m.d.sync += fresh.eq(read)
         with m.If(fresh):
             m.d.sync += held.eq(memory.read_data)
@@ -70,7 +70,7 @@ class ReadBack(wiring.Component):
                 m.next = "READ"
             with m.State("READ"):
                 with m.If(unit != self.end):
-                    m.d.comb += memory.read_valid.eq(free)
+                    m.d.comb += memory.read.valid.eq(free)
                     with m.If(read):
                         m.d.sync += address.eq(address + 1)
                         with m.If(address + 1 >= self.words):

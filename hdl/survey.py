@@ -55,10 +55,10 @@ class Survey(wiring.Component):
         m.d.comb += [
             # 1010…: neither this nor its complement is what silent lines read.
             pattern.eq(Const(0xAAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
-            memory.write_unit.eq(self.end),
-            memory.read_unit.eq(self.end),
-            memory.write_depth.eq(pattern),
-            memory.write_lanes.eq(Lane.DEPTH),
+            memory.write.unit.eq(self.end),
+            memory.read.unit.eq(self.end),
+            memory.write.depth.eq(pattern),
+            memory.write.lanes.eq(Lane.DEPTH),
         ]
         with m.FSM():
             with m.State("IDLE"), m.If(self.start):
@@ -69,11 +69,11 @@ class Survey(wiring.Component):
                     m.d.comb += self.done.eq(1)
                     m.next = "IDLE"
                 with m.Else():
-                    m.d.comb += memory.write_valid.eq(1)
+                    m.d.comb += memory.write.valid.eq(1)
                     with m.If(~memory.write_busy):
                         m.next = "READ"
             with m.State("READ"):
-                m.d.comb += memory.read_valid.eq(1)
+                m.d.comb += memory.read.valid.eq(1)
                 with m.If(~memory.read_busy):
                     m.next = "COMPARE"
             with m.State("COMPARE"):

@@ -95,26 +95,26 @@ class VideoScanGenerator(wiring.Component):
                                == timing.horizontal_sync_positive),
             vertical_sync.eq((line < timing.vertical_sync) == timing.vertical_sync_positive),
             self.start.eq(pixel & (column == 0) & (line == 0)),
-            scan.fetch.eq(pixel & active),
-            scan.fetch_x.eq(column - left),
-            scan.fetch_y.eq(line - top),
+            scan.fetch.valid.eq(pixel & active),
+            scan.fetch.x.eq(column - left),
+            scan.fetch.y.eq(line - top),
         ]
 
-        def delayed(signal):
+        def delayed(signal, name):
             """The signal when its pixel is on the video bus."""
             for stage in range(self.bus_latency):
-                later = Signal.like(signal, name=f"{signal.name}_{stage + 1}", init=0)
+                later = Signal.like(signal, name=f"{name}_{stage + 1}")
                 m.d.sync += later.eq(signal)
                 signal = later
             return signal
 
-        on_bus = delayed(active)
-        m.d.comb += [scan.show_x.eq(delayed(scan.fetch_x)), scan.show_y.eq(delayed(scan.fetch_y))]
+        on_bus = delayed(active, "active")
+        m.d.comb += scan.show.eq(delayed(scan.fetch, "fetch"))
         m.d.sync += [
-            pins.pixel.eq(delayed(pixel)),
+            pins.pixel.eq(delayed(pixel, "pixel")),
             pins.active.eq(on_bus),
-            pins.horizontal_sync.eq(delayed(horizontal_sync)),
-            pins.vertical_sync.eq(delayed(vertical_sync)),
+            pins.horizontal_sync.eq(delayed(horizontal_sync, "horizontal_sync")),
+            pins.vertical_sync.eq(delayed(vertical_sync, "vertical_sync")),
             Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, scan.video, 0)),
         ]
         return m

@@ -56,10 +56,10 @@ class _Run:
         """Every memory word random, as after power-on."""
         source = random.Random(self.job.memory_seed)
         for unit in self.machine.memory_units:
-            for bank in unit.memory.banks:
-                width = Shape.cast(bank.shape).width
-                for address in range(bank.depth):
-                    ctx.set(bank.data[address], source.getrandbits(width))
+            words = unit.memory.storage.data
+            width = Shape.cast(words.shape).width
+            for address in range(words.depth):
+                ctx.set(words[address], words.shape.from_bits(source.getrandbits(width)))
 
     async def _bench(self, ctx) -> None:
         """Host and screen in one loop over the clocks: several benches would cost more time."""
