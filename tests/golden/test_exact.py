@@ -210,17 +210,18 @@ def test_triangulated_polygon_is_covered_once(ring, hub, shifts):
 @pytest.mark.parametrize("depths", [
     [(0, 2**32 - 2, 0), (2**32 - 2, 0, 1)],
     [(2**32 - 2,) * 3, (2**32 - 2, 2**32 - 2, 2**32 - 3)],
-    [(2**19 + 10,) * 3, (2**19 + 10, 2**19, 1)],  # just past 63 bits
+    [(2**19 + 10,) * 3, (2**19 + 10,) * 3],  # just past 63 bits
 ])  # fmt: skip
 def test_extreme_triangle_does_not_overflow(depths):
     """Area and depth at both ends of their ranges: 2N + D needs 77 bits."""
     limit = 1 << 21
-    corners = [(-limit, -limit), (limit - 1, -limit), (-limit, limit - 1)]
-    other = [(limit - 1, limit - 1), (limit - 1, -limit), (-limit, limit - 1)]
+    # The two halves of the coordinate range; no pixel below is on the diagonal.
+    corners = [(-limit, -limit), (limit - 1, -limit), (limit - 1, limit - 1)]
+    other = [(-limit, limit - 1), (-limit, -limit), (limit - 1, limit - 1)]
     display_list = make([corners, other], 4096, 4096, depth=depths, depth_bits=32)
     area = (2 * limit - 1) ** 2
     assert area * max(map(max, depths)) >= 2**63
-    for x, y in ((0, 0), (1, 0), (4095, 0), (17, 1234), (4095, 4095), (1500, 4000)):
+    for x, y in ((1, 0), (4095, 0), (4095, 4094), (17, 1234), (0, 4095), (1500, 4000)):
         fragments = exact.fragments(display_list, pixel=(x, y))
         expected = {}
         for primitive, triangle in enumerate((corners, other)):
@@ -236,7 +237,7 @@ def test_extreme_triangle_does_not_overflow(depths):
                     + Fraction(1, 2))
         assert dict(zip(fragments.primitive.tolist(), fragments.depth.tolist(),
                         strict=True)) == expected
-        assert expected
+        assert list(expected) == [int(y > x)]
 
 
 def test_both_forms_of_depth_agree():
