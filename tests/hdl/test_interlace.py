@@ -1,0 +1,167 @@
+"""Pixel ↔ unit arithmetic: exhaustive over small pictures, for every number of units."""
+
+import pytest
+from cardcage.golden.interlace import interlace_for
+from cardcage.hdl.interlace import LatticeBlock, PixelAddress, ScanAddress
+from hdl_bench.bench import evaluate
+from hdl_bench.pictures import small_machine
+
+UNITS = (1, 2, 4, 8, 16)
+
+#: Width, height, words of a unit: whole pictures, padded ones, and ones too large for the memory.
+PICTURES = [(16, 8, 128), (7, 5, 35), (1, 1, 1), (16, 16, 16), (16, 16, 3), (9, 13, 8), (5, 16, 1)]
+
+
+def machine(width, height, words):
+    return small_machine("PM", width, height, words=words, maximum_units=16)
+
+
+def settled(configuration, units):
+    """The picture contract: y halves first, until the memory of all units holds the picture."""
+    return interlace_for(configuration.width, configuration.height, words=configuration.words,
+                         units=units)
+
+
+def unit_of(units, x, y):
+    """The number of a pixel's unit, spelled out: x0 y0 x1 y1 …, most significant first."""
+    bits = {1: [], 2: [y], 4: [x, y], 8: [x, y, y >> 1], 16: [x, y, x >> 1, y >> 1]}[units]
+    number = 0
+    for bit in bits:
+        number = number * 2 + (bit & 1)
+    return number
+
+
+PITCH = {1: (1, 1), 2: (1, 2), 4: (2, 2), 8: (2, 4), 16: (4, 4)}
+
+
+@pytest.mark.parametrize("picture", PICTURES, ids=str)
+def test_pixel_address(picture):
+    configuration = machine(*picture)
+    dut = PixelAddress(configuration=configuration)
+
+    def steps(ctx):
+        for units in UNITS:
+            ctx.set(dut.total, units)
+            interlace = settled(configuration, units)
+            across, down = PITCH[units]
+            places = set()
+            for y in range(interlace.height):
+                for x in range(interlace.width):
+                    ctx.set(dut.x, x)
+                    ctx.set(dut.y, y)
+                    place = ctx.get(dut.unit), ctx.get(dut.address)
+                    pitch = -(-interlace.width // across)
+                    assert place == (unit_of(units, x, y), y // down * pitch + x // across)
+                    places.add(place)
+            assert len(places) == interlace.width * interlace.height
+            words = ctx.get(dut.words)
+            assert words == interlace.words <= configuration.words
+            assert max(address for _, address in places) < words
+            assert {unit for unit, _ in places} <= set(range(units))
+
+    evaluate(dut, steps)
+
+
+def test_pixel_address_without_a_supported_total():
+    dut = PixelAddress(configuration=machine(16, 8, 128))
+
+    def steps(ctx):
+        ctx.set(dut.x, 5)
+        ctx.set(dut.y, 7)
+        for total in set(range(32)) - set(UNITS):
+            ctx.set(dut.total, total)
+            assert ctx.get(dut.unit) == ctx.get(dut.address) == 0
+
+    evaluate(dut, steps)
+
+
+@pytest.mark.parametrize("picture", PICTURES, ids=str)
+@pytest.mark.parametrize("units", UNITS)
+def test_scan_address(picture, units):
+    """Every scan address selects one unit, after a fetch of the right word by that unit."""
+    configuration = machine(*picture)
+    interlace = settled(configuration, units)
+    dut = ScanAddress(configuration=configuration)
+
+    def steps(ctx):
+        ctx.set(dut.total, units)
+        fetched = {}  # unit → address last fetched in this line
+        reads = dict.fromkeys(range(units), 0)
+        for scan_y in range(configuration.height):
+            fetched.clear()
+            reads = dict.fromkeys(range(units), 0)
+            ctx.set(dut.y, scan_y)
+            for scan_x in range(configuration.width):
+                ctx.set(dut.x, scan_x)
+                x, y = scan_x >> interlace.x_shift, scan_y >> interlace.y_shift
+                selected = []
+                for unit in range(units):
+                    ctx.set(dut.id, unit)
+                    if ctx.get(dut.fetch):
+                        fetched[unit] = ctx.get(dut.address)
+                        reads[unit] += 1
+                    if ctx.get(dut.selected):
+                        selected.append(unit)
+                assert selected == [unit_of(units, x, y)]
+                assert fetched[selected[0]] == interlace.address(x, y)
+            assert max(reads.values()) <= interlace.pitch
+
+    evaluate(dut, steps)
+
+
+def lattice(x_offset, y_offset, x_stride_bits, y_stride_bits, size=16):
+    return {(x, y) for y in range(y_offset, size, 1 << y_stride_bits)
+            for x in range(x_offset, size, 1 << x_stride_bits)}
+
+
+def test_lattice_blocks_tile_every_domain():
+    configuration = machine(16, 16, 256)
+    dut = LatticeBlock(configuration=configuration)
+    x_bits, y_bits = len(dut.x_offset), len(dut.y_offset)
+    assert (x_bits, y_bits) == (2, 2)
+
+    def steps(ctx):
+        for units in UNITS:
+            ctx.set(dut.total, units)
+            pixels = {unit: set() for unit in range(units)}
+            for y in range(16):
+                for x in range(16):
+                    pixels[unit_of(units, x, y)].add((x, y))
+            for first in range(units):
+                for end in range(first + 1, units + 1):
+                    check_domain(ctx, pixels, first, end)
+
+    def check_domain(ctx, pixels, first, end):
+        ctx.set(dut.end, end)
+        blocks = []
+        while first < end:
+            ctx.set(dut.first, first)
+            after = ctx.get(dut.after)
+            size = after - first
+            assert first < after <= end
+            assert size & (size - 1) == 0 and first % size == 0
+            # The largest such block: twice as many would not be aligned, or go beyond the end.
+            assert first % (2 * size) or first + 2 * size > end
+            found = lattice(*(ctx.get(port) for port in (
+                dut.x_offset, dut.y_offset, dut.x_stride_bits, dut.y_stride_bits)))
+            assert found == set.union(*(pixels[unit] for unit in range(first, after)))
+            blocks.append(size)
+            first = after
+        assert len(blocks) <= 7
+
+    evaluate(dut, steps)
+
+
+def test_equal_shares_are_one_lattice():
+    dut = LatticeBlock(configuration=machine(16, 16, 256))
+
+    def steps(ctx):
+        for units in UNITS:
+            ctx.set(dut.total, units)
+            for share in (count for count in UNITS if count <= units):
+                for first in range(0, units, share):
+                    ctx.set(dut.first, first)
+                    ctx.set(dut.end, first + share)
+                    assert ctx.get(dut.after) == first + share
+
+    evaluate(dut, steps)
