@@ -36,7 +36,7 @@ class MachineConfiguration:
     ``depth_bits``        bits of a stored depth
     ``fraction_bits``     fraction bits of the interpolants
     ``shading``           ``"flat"`` builds no colour interpolators
-    ``words``             words of each memory unit; 0 means what ``width`` × ``height`` needs
+    ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
     ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
     ``fifo_depth``        primitives a processing element can hold in waiting
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
@@ -188,7 +188,7 @@ def configure(display_list: DisplayList, *, cards: str, fraction_bits: int | Non
         fraction_bits=fraction_bits, **rest)
 
 
-#: Named machines: ``tiny`` at one glance, ``small`` for quick tests, ``paper`` for 512×512.
+#: Named machines: ``tiny`` at one glance, ``small`` for quick tests, ``paper`` for 512x512.
 PRESETS: dict[str, dict[str, Any]] = {
     "tiny": {"cards": "PM", "width": 16, "height": 16, "fraction_bits": 28,
              "clocks_per_pixel": 2},

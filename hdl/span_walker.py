@@ -78,25 +78,24 @@ class SpanWalker(wiring.Component):
             return (block.y_offset - row) & mask
 
         with m.FSM():
-            with m.State("LOAD"):
-                with m.If(self.triangles.valid):
-                    m.d.comb += [edge.load.eq(1) for edge in edges.values()]
-                    m.d.sync += [
-                        after.eq(block.after),
-                        x_offset.eq(block.x_offset),
-                        x_stride_bits.eq(block.x_stride_bits),
-                        to_double.eq(block.y_stride_bits),
-                        y_stride.eq(1 << block.y_stride_bits),
-                        upper_steps.eq(rows_to_lattice(triangle.top)),
-                        lower_steps.eq(rows_to_lattice(triangle.middle)),
-                        y.eq(triangle.top + rows_to_lattice(triangle.top)),
-                    ]
-                    with m.If(self.first == self.end):  # a domain without units
-                        m.d.comb += self.triangles.ready.eq(1)
-                    with m.Elif(block.y_stride_bits == 0):
-                        m.next = "WALK"
-                    with m.Else():
-                        m.next = "STRIDE"
+            with m.State("LOAD"), m.If(self.triangles.valid):
+                m.d.comb += [edge.load.eq(1) for edge in edges.values()]
+                m.d.sync += [
+                    after.eq(block.after),
+                    x_offset.eq(block.x_offset),
+                    x_stride_bits.eq(block.x_stride_bits),
+                    to_double.eq(block.y_stride_bits),
+                    y_stride.eq(1 << block.y_stride_bits),
+                    upper_steps.eq(rows_to_lattice(triangle.top)),
+                    lower_steps.eq(rows_to_lattice(triangle.middle)),
+                    y.eq(triangle.top + rows_to_lattice(triangle.top)),
+                ]
+                with m.If(self.first == self.end):  # a domain without units
+                    m.d.comb += self.triangles.ready.eq(1)
+                with m.Elif(block.y_stride_bits == 0):
+                    m.next = "WALK"
+                with m.Else():
+                    m.next = "STRIDE"
             with m.State("STRIDE"):
                 m.d.comb += [edge.double.eq(1) for edge in edges.values()]
                 m.d.comb += [

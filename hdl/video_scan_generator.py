@@ -2,7 +2,7 @@
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import Out
 
 from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
 from .backplane import ScanLines

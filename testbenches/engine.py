@@ -25,7 +25,7 @@ class Job:
     ``responses``        how many responses the machine owes in all; the run ends when they are in
                          and a whole scan has been seen since the last ``FRAME_SHOWN``
     ``memory_seed``      None leaves memories zero, a number fills them with random words first
-    ``stall_seed``       None is never idle; a number makes the host pause at random, on both streams
+    ``stall_seed``       None is never idle; a number makes the host pause at random on both streams
     ``waveform``         where to write a VCD, if anywhere
     ``maximum_cycles``   raise ``TimeoutError`` beyond: the machine hangs
     """

@@ -1,0 +1,77 @@
+"""One frame through the simulated machine, checked where it leaves: video pins and read-back."""
+
+import numpy as np
+
+from cardcage.golden import bit_true, exact
+from cardcage.golden.configuration import configure
+from cardcage.golden.display_list import DisplayList
+from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.simulation import expected_video, simulate
+
+BACKGROUND = (12, 34, 56)
+
+
+def triangles(position, depth, color, *, width=8, height=8, sub_bits=8, depth_bits=12,
+              background=BACKGROUND):
+    """A display list from nested lists, positions in pixels."""
+    return DisplayList(
+        width=width, height=height, sub_bits=sub_bits, depth_bits=depth_bits,
+        background=background,
+        position=np.round(np.array(position, float).reshape(-1, 3, 2) * 2**sub_bits).astype(np.int32),
+        depth=np.array(depth, np.int64).reshape(-1, 3),
+        color=np.array(color, np.uint8).reshape(-1, 3, 3),
+    )
+
+
+def random_list(seed, count, *, width=8, height=8, depth_bits=12, flat=False):
+    """Triangles of every size, some far outside the picture."""
+    source = np.random.default_rng(seed)
+    center = source.uniform(-0.2, 1.2, (count, 1, 2))
+    size = source.choice([0.1, 0.4, 1.5], (count, 1, 1))
+    position = (center + source.uniform(-size, size, (count, 3, 2))) * (width, height)
+    low = -(1 << (max(width, height) - 1).bit_length() + 1)
+    color = source.integers(0, 256, (count, 3, 3))
+    return triangles(
+        np.clip(position, low, -low - 1), source.integers(0, (1 << depth_bits) - 1, (count, 3)),
+        color[:, :1].repeat(3, axis=1) if flat else color,
+        width=width, height=height, depth_bits=depth_bits)
+
+
+def golden_picture(configuration, display_list):
+    interlace = configuration.interlace
+    return exact.draw(display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+
+
+def draw(display_list, *, cards, seed=1, **options):
+    """Simulate one frame from random memory and check every pixel; the ``Simulation``."""
+    options.setdefault("clocks_per_pixel", 2)
+    configuration = configure(display_list, cards=cards, **options)
+    simulation = simulate(configuration, display_list, PysimEngine(), memory_seed=seed)
+    check(configuration, display_list, simulation)
+    return simulation
+
+
+def check(configuration, display_list, simulation):
+    """Colour as it left the pins and depth as it was read back, equal to golden everywhere."""
+    interlace = configuration.interlace
+    picture = golden_picture(configuration, display_list)
+    video = expected_video(configuration, picture.color)
+    assert simulation.video.shape == (configuration.height, configuration.width, 3)
+    assert simulation.depth.shape == (interlace.height, interlace.width)
+    wrong = np.argwhere((simulation.video != video).any(axis=-1))
+    assert not len(wrong), f"{len(wrong)} colours differ, first at (y, x) = {wrong[0]}"
+    wrong = np.argwhere(simulation.depth != picture.depth)
+    assert not len(wrong), f"{len(wrong)} depths differ, first at (y, x) = {wrong[0]}"
+    covered = exact.depth_complexity(display_list, x_shift=interlace.x_shift,
+                                     y_shift=interlace.y_shift)
+    assert sum(work.fragments for work in simulation.work) == covered.sum()
+
+
+def check_bit_true(configuration, display_list, simulation):
+    """As ``check``, against the datapath's model where the precision is below exact."""
+    interlace = configuration.interlace
+    picture = bit_true.draw(display_list, fraction_bits=configuration.fraction_bits,
+                            shading=configuration.shading,
+                            x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    np.testing.assert_array_equal(simulation.video, expected_video(configuration, picture.color))
+    np.testing.assert_array_equal(simulation.depth, picture.depth)

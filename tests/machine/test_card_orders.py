@@ -1,0 +1,45 @@
+"""Any legal order of the cards, and any number of units, draws the same display list."""
+
+import itertools
+
+import numpy as np
+import pytest
+from frames import draw, random_list
+
+LIST = random_list(7, 12, width=16, height=16)
+
+#: 2 processing elements and 4 memory units, one processing element left of every unit.
+ORDERS = sorted({"P" + "".join(rest) for rest in itertools.permutations("PMMMM")})
+
+
+def test_every_legal_order_gives_the_same_picture():
+    assert len(ORDERS) == 5
+    pictures, work = [], {}
+    for order in ORDERS:
+        simulation = draw(LIST, cards=order)  # equal to golden, so equal to each other
+        pictures.append(simulation.video)
+        work[order] = [element.fragments for element in simulation.work]
+    for picture in pictures[1:]:
+        np.testing.assert_array_equal(picture, pictures[0])
+    # The orders are different machines all the same: the work falls differently.
+    assert len({tuple(sorted(share)) for share in work.values()}) > 1, work
+    assert work["PMMPMM"] != work["PMPMMM"]
+
+
+@pytest.mark.parametrize("cards", ["PMMMPM", "PMPMMPPMP", "PPMMMMMMMMPMMMMPMMPMM", "2x(PMPMMM)"])
+def test_shares_need_not_be_equal_nor_present(cards):
+    draw(random_list(8, 8, width=16, height=16), cards=cards, seed=3)
+
+
+@pytest.mark.parametrize("units", [1, 2, 4, 8, 16])
+def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units):
+    """64 words: 16 units hold more than 16×16 needs, one unit holds 8×8."""
+    simulation = draw(LIST, cards="P" + "M" * units, words=32, maximum_units=16)
+    resolutions = {1: (8, 4), 2: (8, 8), 4: (16, 8), 8: (16, 16), 16: (16, 16)}
+    assert (simulation.interlace.width, simulation.interlace.height) == resolutions[units]
+
+
+@pytest.mark.parametrize(("width", "height", "cards"), [(13, 7, "PMMPMM"), (5, 9, "PMMMMPMMMM"),
+                                                       (1, 1, "PMM"), (3, 2, "4x(PMM)")])
+def test_sizes_that_are_no_multiple_of_the_interlace(width, height, cards):
+    draw(random_list(9, 8, width=width, height=height), cards=cards)
