@@ -157,6 +157,7 @@ def prepared_triangles(configuration: MachineConfiguration,
     def plane(planes: Any) -> dict[str, Any]:
         return {name: integers(getattr(planes, name)) for name in ("start", "step_x", "step_y")}
 
+    colors: list[Any]
     if configuration.shading == "flat":
         assert prepared.flat_color is not None
         colors = [integers(prepared.flat_color[:, channel]) for channel in range(3)]
@@ -173,7 +174,8 @@ def prepared_triangles(configuration: MachineConfiguration,
     values["planes"] = {"depth": plane(prepared.depth),
                         **dict(zip(CHANNELS, colors, strict=True))}
     body: NDArray[np.object_] = pack(prepared_triangle_layout(configuration), values)
-    return (body << BODY_OFFSET) + int(Opcode.PREPARED_TRIANGLE)
+    words: NDArray[np.object_] = (body << BODY_OFFSET) + int(Opcode.PREPARED_TRIANGLE)
+    return words
 
 
 def unpack_response(word: int) -> tuple[ResponseKind, int]:

@@ -12,13 +12,13 @@ from .fixed import MAX_FRACTION_BITS
 from .interlace import Interlace, interlace_for
 from .setup import (
     COLOR_BITS,
-    Shading,
     color_word_bits,
     depth_word_bits,
     edge_column_bits,
     edge_remainder_bits,
     scene_fraction_bits,
 )
+from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 
 MAXIMUM_SIZE = 4096

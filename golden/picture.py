@@ -25,8 +25,8 @@ class Picture:
 
     @property
     def height(self) -> int:
-        return self.color.shape[0]
+        return int(self.color.shape[0])
 
     @property
     def width(self) -> int:
-        return self.color.shape[1]
+        return int(self.color.shape[1])

@@ -126,7 +126,7 @@ def _bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
     the stalls of the most patient host, and some scans.
     """
     pixels = configuration.width * configuration.height
-    return (1000 + 60 * len(words) + (len(words) + 4) * 8 * (pixels + 64 * configuration.height)
+    return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64)
             + 30 * configuration.interlace.units * configuration.interlace.words
             + 4 * configuration.cycles_per_scan)
 

@@ -7,7 +7,7 @@ import types
 
 import numpy as np
 import pytest
-from frames import draw, random_list, triangles
+from frames import check_scans, draw, random_list, triangles
 
 #: name → (module, its class, where it is used, right, wrong)
 MUTANTS = {
@@ -51,9 +51,9 @@ MUTANTS = {
         "memory_unit", "MemoryUnit", ["machine"],
         "Mux(self.front, memory.color[1], memory.color[0])",
         "Mux(self.front, memory.color[0], memory.color[1])"),
-    "survey finds a unit too many": (
+    "survey takes silence for an answer": (
         "survey", "Survey", ["processing_element"],
-        "memory.read_data != pattern", "(memory.read_data != pattern) & second"),
+        "memory.read_data != pattern", "memory.read_data == pattern"),
     "clear stops a word early": (
         "clear", "Clear", ["processing_element"],
         "address + 1 >= self.words", "address + 2 >= self.words"),
@@ -86,16 +86,18 @@ def mutate(monkeypatch, name):
 def check_machine():
     """The frames that tell every mutant from the machine."""
     draw(random_list(5, 12), cards="PMMPMM", seed=2)
-    # Edges through pixel centres, on the half-pixel grid: every carry at equality.
+    # Edges on the half-pixel grid with few sub-pixel bits, so that every kind of remainder
+    # occurs, and equal depths.
     source = np.random.default_rng(3)
-    on_centres = source.integers(-2, 20, (12, 3, 2)) / 2
-    draw(triangles(on_centres, source.integers(0, 4000, (12, 3)),
-                   source.integers(0, 256, (12, 3, 3))), cards="PMMPMM", seed=3)
+    draw(triangles(source.integers(-2, 20, (16, 3, 2)) / 2,
+                   source.integers(0, 3, (16, 1)).repeat(3, axis=1),
+                   source.integers(0, 256, (16, 3, 3)), sub_bits=1), cards="PMMPMM", seed=3)
     # Each pixel is hit twice in a row, the farther second, while the one port is a bottleneck.
     pixels = [[[x + 0.1, y + 0.1], [x + 1.4, y + 0.1], [x + 0.1, y + 1.4]]
               for y in range(8) for x in range(8)]
     draw(triangles(np.repeat(pixels, 2, axis=0), [[100] * 3, [200] * 3] * 64,
                    [[[1, 2, 3]] * 3, [[200, 100, 50]] * 3] * 64), cards="PM", seed=4)
+    check_scans()  # the processing element is busy while the old picture is shown
 
 
 def test_the_machine_itself_passes():

@@ -3,10 +3,12 @@
 import numpy as np
 
 from cardcage.golden import bit_true, exact
+from cardcage.golden.commands import ResponseKind
 from cardcage.golden.configuration import configure
 from cardcage.golden.display_list import DisplayList
+from cardcage.testbenches.engine import Job
 from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import expected_video, simulate
+from cardcage.testbenches.simulation import expected_video, frame_commands, simulate
 
 BACKGROUND = (12, 34, 56)
 
@@ -65,6 +67,40 @@ def check(configuration, display_list, simulation):
     covered = exact.depth_complexity(display_list, x_shift=interlace.x_shift,
                                      y_shift=interlace.y_shift)
     assert sum(work.fragments for work in simulation.work) == covered.sum()
+
+
+def check_scans():
+    """Draw a quick picture, a slow one, the quick one again; every scan shows one of them whole.
+
+    Returns how many scans repeated the old picture while each of the three was drawn.
+    """
+    quick, slow = random_list(1, 2), random_list(2, 150)
+    configuration = configure(slow, cards="PM", clocks_per_pixel=2)
+    job = Job(
+        configuration,
+        commands=[*frame_commands(configuration, quick), *frame_commands(configuration, slow),
+                  *frame_commands(configuration, quick)],
+        responses=4 + 3 * 2,
+        memory_seed=9,
+        maximum_cycles=60 * configuration.cycles_per_scan,
+    )
+    run = PysimEngine().run(job)
+    repeated = [value for kind, value, _ in run.responses if kind == ResponseKind.FRAME_SHOWN]
+
+    whole = {
+        "dark": np.zeros((8, 8, 3), np.uint8),  # what the boot leaves in both buffers
+        "quick": golden_picture(configuration, quick).color,
+        "slow": golden_picture(configuration, slow).color,
+    }
+    seen = []
+    for scan in run.scans[1:]:  # the machine still boots during the first
+        names = [name for name, picture in whole.items() if (picture == scan.picture).all()]
+        assert len(names) == 1, f"torn scan at cycle {scan.cycle}"
+        seen += names
+    changes = [name for place, name in enumerate(seen) if place == 0 or seen[place - 1] != name]
+    assert changes in (["dark", "quick", "slow", "quick"], ["quick", "slow", "quick"])
+    assert seen[seen.index("quick"):seen.index("slow")] == ["quick"] * (1 + repeated[1])
+    return repeated
 
 
 def check_bit_true(configuration, display_list, simulation):
