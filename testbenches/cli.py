@@ -1,0 +1,114 @@
+"""The command line."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..golden.configuration import MAXIMUM_WORDS, PRESETS
+from .command_group import EXIT_DIFFERENT, CommandGroup, warn
+from .command_options import FractionBits, Size
+from .engines import AUTO, ENGINES
+from .progress import progress_bar
+from .render import DEFAULT_SCENE, RenderOptions, prepare_render
+from .render_summary import render_summary
+from .scenes_table import scenes_json, scenes_table, scenes_text
+
+HELP_SETTINGS = {"max_content_width": 100, "help_option_names": ["-h", "--help"]}
+
+
+@click.group(cls=CommandGroup, invoke_without_command=True, context_settings=HELP_SETTINGS)
+@click.version_option(package_name="cardcage", prog_name="cardcage")
+@click.pass_context
+def main(context: click.Context) -> None:
+    """Parallel Z-buffer graphics machines as RTL, every pixel proved against a golden model.
+
+    \b
+    Examples:
+      cardcage render                    the teapot, simulated and checked in some 20 seconds
+      cardcage render mesh.obj           a mesh of yours
+      cardcage scenes                    what else there is to draw
+
+    \b
+    Exit status: 0 done and equal, 1 the picture differs from the golden model,
+    2 the input is wrong, 130 interrupted.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+@main.command()
+@click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
+@click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
+              "processing element, M a memory unit.  [default: 2x(PMM)]")
+@click.option("--size", type=Size(), metavar="WxH", help="Highest resolution.  [default: 64x64]")
+@click.option("--preset", type=click.Choice(list(PRESETS)),
+              help="A named machine; other options override it.")
+@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+              help="The simulator.")
+@click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
+              help="Fraction bits of depth and colour; exact takes what the scene needs.  "
+              "[default: exact]")
+@click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
+              show_default=True, help="Colour interpolators in the machine, or not; auto has them "
+              "where the scene needs them.")
+@click.option("--words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+              help="Words of each memory unit; too few make the picture coarser.  "
+              "[default: what the size needs]")
+@click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
+              help="Clocks a pixel lasts on the video output.  [default: 2]")
+@click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
+              help="Start with random words in every memory, as after power-on.")
+@click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE.vcd",
+              help="Also record every signal.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
+              show_default=True, metavar="DIR", help="Folder of the report.")
+@click.pass_obj
+def render(command_line: str, scene: str, waveform: Path | None, out: Path,
+           **options: Any) -> None:
+    """Draw SCENE on a simulated machine and compare every pixel with the golden model.
+
+    SCENE is a mesh (.obj .stl .ply .glb .gltf), a saved display list (.npz) or a built-in scene,
+    with arguments if need be.  The report goes to DIR: open report.html.
+
+    \b
+    Examples:
+      cardcage render
+      cardcage render mesh.stl --size 96x96 --out mesh-report
+      cardcage render teapot --cards '4x(PMM)' --size 64x64
+      cardcage render sphereflake:depth=1 --fraction-bits 6
+      cardcage render random:n=40,size=12,seed=7 --preset tiny --waveform tiny.vcd
+      cardcage render cardcage-out/display_list.npz --cards 'PM PMMM'
+    """
+    job = prepare_render(scene, RenderOptions(**options), command_line)
+    for warning in job.warnings:
+        warn(warning)
+    with progress_bar(job.expected_cycles()) as progress:
+        rendering = job.run(out, waveform, progress)
+    for warning in rendering.warnings[len(job.warnings):]:
+        warn(warning)
+    click.echo(render_summary(rendering))
+    if not rendering.comparison.equal:
+        click.get_current_context().exit(EXIT_DIFFERENT)
+
+
+@main.command()
+@click.option("--json", "as_json", is_flag=True, help="For programs: a list of objects.")
+def scenes(as_json: bool) -> None:
+    """List the built-in scenes, their parameters and their triangles.
+
+    \b
+    Examples:
+      cardcage scenes
+      cardcage scenes --json
+      cardcage render sphereflake:depth=1,tessellation=2
+    """
+    if as_json:
+        click.echo(scenes_json())
+    elif sys.stdout.isatty():
+        scenes_table()
+    else:
+        click.echo(scenes_text())

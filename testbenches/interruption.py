@@ -1,0 +1,65 @@
+"""Ctrl-C and SIGTERM as an exception that leaves nothing half-done."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Interrupted(BaseException):
+    """The user or the system wants the program to end.
+
+    ``status`` is the exit status by the shell's custom: 130 for Ctrl-C, 143 for SIGTERM.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(signal.Signals(number).name)
+        self.status = 128 + number
+
+
+def _raise(number: int, _frame: object) -> None:
+    raise Interrupted(number)
+
+
+def _in_main_thread() -> bool:
+    # Python runs signal handlers, and lets them be changed, in the main thread only.
+    return threading.current_thread() is threading.main_thread()
+
+
+@contextmanager
+def _handlers(handler: object) -> Iterator[None]:
+    before = {number: signal.signal(number, handler) for number in SIGNALS}  # type: ignore[arg-type]
+    try:
+        yield
+    finally:
+        for number, previous in before.items():
+            signal.signal(number, previous)
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Within, SIGINT and SIGTERM raise ``Interrupted``; no effect outside the main thread."""
+    if not _in_main_thread():
+        yield
+        return
+    with _handlers(_raise):
+        yield
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """A signal that arrives within takes effect at the end: for clean-up and renaming."""
+    if not _in_main_thread():
+        yield
+        return
+    arrived: list[int] = []
+    try:
+        with _handlers(lambda number, _frame: arrived.append(number)):
+            yield
+    finally:
+        if arrived:
+            signal.raise_signal(arrived[0])

@@ -1,0 +1,38 @@
+"""The progress bar of a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from .engine import Progress as ProgressFunction
+
+
+@contextmanager
+def progress_bar(expected_cycles: int) -> Iterator[ProgressFunction | None]:
+    """A function to tell the progress to; None where the error output is no terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    with Progress(
+        TextColumn("simulating"),
+        BarColumn(),
+        TextColumn("{task.completed:,.0f} cycles"),
+        TimeElapsedColumn(),
+        TextColumn("elapsed, about"),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+        console=console,
+        transient=True,
+    ) as bar:
+        task = bar.add_task("simulating", total=expected_cycles)
+
+        def report(cycles: int, responses: int) -> None:
+            # The expectation is a guess: never show a bar that is full and goes on.
+            bar.update(task, completed=cycles, total=max(expected_cycles, cycles * 21 // 20))
+
+        yield report

@@ -1,0 +1,205 @@
+"""Draw a scene on a simulated machine, compare the frame with the golden picture, report."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from ..golden.configuration import PRESETS, MachineConfiguration, configure
+from ..golden.errors import InputError
+from ..golden.exact import depth_complexity
+from ..golden.scene_display_list import SceneDisplayList, make_display_list
+from ..golden.scenes.registry import DisplayListScene, parse_scene
+from ..golden.setup import scene_fraction_bits
+from .atomic_output import atomic_file, atomic_folder, output_errors
+from .compare import compare
+from .engine import Progress
+from .engines import AUTO, make_engine
+from .rendering import Rendering
+from .simulation import MachineError, Simulation, simulate
+
+#: Pretty, and some 20 seconds in the slowest engine.
+DEFAULT_SCENE = "teapot:tessellation=3"
+DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
+
+ShadingChoice = Literal["auto", "flat", "gouraud"]
+
+
+@dataclass(frozen=True)
+class RenderOptions:
+    """What can be asked of a rendering; None leaves a choice to the preset or the scene.
+
+    ``preset``            a named machine of ``golden.configuration.PRESETS``; the rest overrides it
+    ``cards``             card order, such as ``4x(PMM)``
+    ``size``              width, height of the highest resolution
+    ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs
+    ``shading``           ``auto`` interpolates colours where the scene has more than one a triangle
+    ``words``             of each memory unit
+    ``clocks_per_pixel``  clocks a pixel lasts on the video output
+    ``engine``            a name of ``engines.ENGINES`` or ``auto``
+    ``random_memory``     seed of the memories' contents before boot; None: zero
+    """
+
+    preset: str | None = None
+    cards: str | None = None
+    size: tuple[int, int] | None = None
+    fraction_bits: int | Literal["exact"] | None = None
+    shading: ShadingChoice = "auto"
+    words: int | None = None
+    clocks_per_pixel: int | None = None
+    engine: str = AUTO
+    random_memory: int | None = None
+
+    def machine(self) -> dict[str, Any]:
+        """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
+        if self.preset is not None and self.preset not in PRESETS:
+            raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
+        fields = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
+        for name in ("cards", "words", "clocks_per_pixel", "fraction_bits"):
+            if getattr(self, name) is not None:
+                fields[name] = getattr(self, name)
+        if self.shading != "auto":
+            fields["shading"] = self.shading
+        if self.size is not None:
+            fields["width"], fields["height"] = self.size
+        return fields
+
+
+@dataclass(frozen=True)
+class RenderJob:
+    """A scene and a machine, checked and ready to be simulated; see ``prepare_render``."""
+
+    scene: SceneDisplayList
+    configuration: MachineConfiguration
+    options: RenderOptions
+    command_line: str | None
+    warnings: tuple[str, ...]
+    began: float
+
+    def expected_cycles(self) -> int:
+        """A guess, within a third or so, at what the simulation takes: for the progress bar."""
+        configuration = self.configuration
+        interlace = configuration.interlace
+        listed = self.scene.display_list
+        fragments = int(depth_complexity(listed, x_shift=interlace.x_shift,
+                                         y_shift=interlace.y_shift).sum())
+        boot = 200 + interlace.words
+        draw = 2 * fragments // configuration.processing_elements + 3 * listed.triangles
+        scan = configuration.cycles_per_scan
+        # The picture is shown from the scan after it is drawn, and that one is watched whole.
+        return ((boot + draw) // scan + 2) * scan
+
+    def run(self, out: Path | None = None, waveform: Path | None = None,
+            progress: Progress | None = None) -> Rendering:
+        """Simulate, compare, and write the report to the folder ``out`` and a VCD to ``waveform``.
+
+        Where these cannot be written is found out first.  Raises ``InputError`` for that, and
+        ``MachineError`` where the machine does not deliver a frame; then no report is written,
+        but the waveform is.
+        """
+        with ExitStack() as recordings:
+            recording = None
+            if waveform is not None:
+                recording = recordings.enter_context(atomic_file(waveform, "--waveform"))
+                recordings.enter_context(output_errors(waveform, "--waveform"))
+            try:
+                return self._reported(out, recording, progress)
+            except MachineError as error:
+                failure = error  # leave normally: the waveform shows how it came to this
+        raise failure
+
+    def _reported(self, out: Path | None, recording: Path | None,
+                  progress: Progress | None) -> Rendering:
+        if out is None:
+            return self._judged(self._simulated(recording, progress))
+        from .report import REPORT_FILES, write_report  # charts take a second to load
+
+        with atomic_folder(out, REPORT_FILES) as folder:
+            rendering = self._judged(self._simulated(recording, progress))
+            rendering = replace(rendering, report=out / "report.html")
+            with output_errors(out, "--out"):
+                write_report(rendering, folder)
+        return rendering
+
+    def _simulated(self, recording: Path | None, progress: Progress | None) -> Simulation:
+        try:
+            return simulate(self.configuration, self.scene.display_list,
+                            make_engine(self.options.engine),
+                            memory_seed=self.options.random_memory, waveform=recording,
+                            progress=progress)
+        except (TimeoutError, AssertionError) as error:
+            raise MachineError(f"the machine failed: {error}") from error
+
+    def _judged(self, simulation: Simulation) -> Rendering:
+        comparison = compare(self.configuration, self.scene.display_list, simulation)
+        warnings = list(self.warnings)
+        if simulation.owned < simulation.total:
+            warnings.append(f"{simulation.total - simulation.owned} of {simulation.total} memory "
+                            "units belong to no processing element; their pixels are not compared")
+        return Rendering(
+            scene=self.scene,
+            configuration=self.configuration,
+            simulation=simulation,
+            comparison=comparison,
+            command_line=self.command_line,
+            warnings=tuple(warnings),
+            wall_seconds=time.perf_counter() - self.began,
+        )
+
+
+def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | None = None,
+                   command_line: str | None = None) -> RenderJob:
+    """Load the scene and choose the machine.  Raises ``InputError`` for whatever cannot be used."""
+    began = time.perf_counter()
+    options = options or RenderOptions()
+    fields = options.machine()
+    width, height = fields.pop("width", None), fields.pop("height", None)
+    if isinstance(parse_scene(scene), DisplayListScene) and options.size is None:
+        width = height = None  # a saved list has its own size, whatever the preset's
+    listed = make_display_list(scene, width=width, height=height,
+                               shading="flat" if options.shading == "flat" else "gouraud")
+    configuration = _configuration(listed, fields)
+    return RenderJob(
+        scene=listed,
+        configuration=configuration,
+        options=options,
+        command_line=command_line,
+        warnings=(*listed.notes, *_resolution_warnings(configuration)),
+        began=began,
+    )
+
+
+def render(scene: str | Path = DEFAULT_SCENE, *, out: Path | None = None,
+           waveform: Path | None = None, progress: Progress | None = None,
+           **options: Any) -> Rendering:
+    """Draw ``scene`` and judge the frame; ``options`` are the fields of ``RenderOptions``.
+
+    Writes nothing unless ``out`` or ``waveform`` is given.  Raises as ``prepare_render`` and
+    ``RenderJob.run``; a frame that differs is no exception: see ``Rendering.comparison``.
+    """
+    job = prepare_render(scene, RenderOptions(**options))
+    return job.run(out, waveform, progress)
+
+
+def _configuration(listed: SceneDisplayList, fields: dict[str, Any]) -> MachineConfiguration:
+    display_list = listed.display_list
+    bits = fields.pop("fraction_bits", "exact")
+    if bits != "exact":
+        return configure(display_list, fraction_bits=bits, **fields)
+    # What the scene needs depends on the resolution, which depends on the memory.
+    draft = configure(display_list, fraction_bits=0, **fields)
+    interlace = draft.interlace
+    return replace(draft, fraction_bits=scene_fraction_bits(
+        display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift))
+
+
+def _resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
+    interlace = configuration.interlace
+    if (interlace.width, interlace.height) == (configuration.width, configuration.height):
+        return ()
+    return (f"{configuration.units} memory units of {configuration.words} words hold "
+            f"{interlace.width}x{interlace.height} pixels, not {configuration.width}x"
+            f"{configuration.height}: the picture is coarser",)

@@ -1,0 +1,101 @@
+"""Writes the report of a rendering: one page, one JSON file, pictures, the display list."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from ..golden.cards import MEMORY_UNIT, domains
+from ..golden.exact import depth_complexity
+from .rendering import Rendering
+from .report_facts import report_facts
+from .report_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
+from .work_chart import work_chart
+
+#: Everything that ``write_report`` writes.
+REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "difference.png",
+                "display_list.npz")
+
+
+@dataclass(frozen=True)
+class CardGroup:
+    """Neighbouring cards in the drawing of the cage: a processing element and its units.
+
+    ``element`` is None for units that belong to nobody.
+    """
+
+    element: int | None
+    units: range
+
+
+def write_report(rendering: Rendering, folder: Path) -> None:
+    """Write ``REPORT_FILES`` to ``folder``, which exists."""
+    facts = report_facts(rendering)
+    (folder / "report.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    (folder / "rtl.png").write_bytes(png(rendering.simulation.video))
+    (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
+    (folder / "difference.png").write_bytes(png(color_difference(rendering)))
+    rendering.scene.display_list.save(folder / "display_list.npz")
+    (folder / "report.html").write_text(report_page(rendering, facts), encoding="utf-8")
+
+
+def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
+    """The page, complete in itself: pictures and chart are inside it."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["hexadecimal"] = _hexadecimal
+    machine_depth, golden_depth = depth_pictures(rendering)
+    return environment.get_template("report.html").render(
+        facts,
+        rows=[
+            ("Colour", "from the video pins", data_uri(rendering.simulation.video),
+             data_uri(rendering.comparison.expected), data_uri(color_difference(rendering))),
+            ("Depth", "read back, near is light", data_uri(machine_depth), data_uri(golden_depth),
+             data_uri(depth_difference(rendering))),
+        ],
+        chart=work_chart(rendering.simulation.work),
+        groups=card_groups(rendering.configuration.cards),
+        display_list=_display_list_facts(rendering),
+        exact=_is_exact(rendering),
+    )
+
+
+def card_groups(cards: str) -> list[CardGroup]:
+    """The cage from left to right."""
+    orphans = len(cards) - len(cards.lstrip(MEMORY_UNIT))
+    groups = [CardGroup(None, range(orphans))] if orphans else []
+    return groups + [CardGroup(number, range(first, first + count))
+                     for number, (first, count) in enumerate(domains(cards))]
+
+
+def _is_exact(rendering: Rendering) -> bool:
+    return rendering.configuration.fraction_bits >= rendering.comparison.exact_fraction_bits
+
+
+def _display_list_facts(rendering: Rendering) -> dict[str, Any]:
+    listed = rendering.scene.display_list
+    interlace = rendering.configuration.interlace
+    complexity = depth_complexity(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    covered = int((complexity > 0).sum())
+    return {
+        "coordinate_bits": listed.coordinate_bits,
+        "colors": "one colour a triangle" if listed.flat else "a colour at each vertex",
+        "background": listed.background,
+        "covered": covered,
+        "pixels": complexity.size,
+        "mean_complexity": complexity.sum() / covered if covered else 0.0,
+        "greatest_complexity": int(complexity.max(initial=0)),
+    }
+
+
+def _hexadecimal(color: tuple[int, int, int]) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*color)
