@@ -5,10 +5,11 @@ from fractions import Fraction
 from math import ceil
 
 import pytest
-from cardcage.golden.grid import Grid
-from cardcage.hdl.edge_walker import EdgeWalker
 from hdl_bench.bench import Agent, simulate
 from hdl_bench.pictures import prepare, prepared_values, random_triangles, small_machine
+
+from cardcage.golden.grid import Grid
+from cardcage.hdl.edge_walker import EdgeWalker
 
 
 def first_column(begin, end, row, grid):

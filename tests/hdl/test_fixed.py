@@ -2,9 +2,10 @@
 
 import pytest
 from amaranth.hdl import Module, Signal, Value, signed, unsigned
+from hdl_bench.bench import evaluate
+
 from cardcage.golden import fixed as golden
 from cardcage.hdl import fixed as hdl
-from hdl_bench.bench import evaluate
 
 WIDTH = 6
 SHAPES = {"unsigned": unsigned(WIDTH), "signed": signed(WIDTH)}

@@ -3,12 +3,13 @@
 import random
 
 import pytest
-from cardcage.golden import fixed
-from cardcage.golden.commands import CHANNELS
-from cardcage.hdl.fragment_stepper import FragmentStepper
 from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
+
+from cardcage.golden import fixed
+from cardcage.golden.commands import CHANNELS
+from cardcage.hdl.fragment_stepper import FragmentStepper
 
 
 def random_spans(configuration, seed, count):

@@ -4,8 +4,9 @@ from itertools import pairwise
 
 import pytest
 from amaranth.hdl import Module
-from cardcage.hdl.id_increment import IdIncrement
 from hdl_bench.bench import evaluate, rejects
+
+from cardcage.hdl.id_increment import IdIncrement
 
 
 @pytest.mark.parametrize("bits", [1, 2, 3, 5])

@@ -1,10 +1,11 @@
 """Pixel ↔ unit arithmetic: exhaustive over small pictures, for every number of units."""
 
 import pytest
-from cardcage.golden.interlace import interlace_for
-from cardcage.hdl.interlace import LatticeBlock, PixelAddress, ScanAddress
 from hdl_bench.bench import evaluate
 from hdl_bench.pictures import small_machine
+
+from cardcage.golden.interlace import interlace_for
+from cardcage.hdl.interlace import LatticeBlock, PixelAddress, ScanAddress
 
 UNITS = (1, 2, 4, 8, 16)
 

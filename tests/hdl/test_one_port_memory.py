@@ -3,8 +3,9 @@
 import random
 
 import pytest
-from cardcage.hdl.one_port_memory import OnePortMemory
 from hdl_bench.bench import Agent, rejects, simulate
+
+from cardcage.hdl.one_port_memory import OnePortMemory
 
 
 class Accesses(Agent):

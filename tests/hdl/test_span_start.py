@@ -3,11 +3,12 @@
 import random
 
 import pytest
-from cardcage.golden.commands import CHANNELS
-from cardcage.hdl.span_start import SpanStart, started_span_layout
 from hdl_bench.bench import Watch, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
+
+from cardcage.golden.commands import CHANNELS
+from cardcage.hdl.span_start import SpanStart, started_span_layout
 
 PASSED_ON = ("x", "y", "more", "x_stride_bits")
 

@@ -4,8 +4,6 @@ import random
 from itertools import pairwise
 
 import pytest
-from cardcage.golden.commands import CHANNELS
-from cardcage.hdl.span_walker import SpanWalker
 from hdl_bench.bench import Drive, simulate
 from hdl_bench.pictures import (
     covered,
@@ -15,6 +13,9 @@ from hdl_bench.pictures import (
     small_machine,
 )
 from hdl_bench.streams import Sink, Source, no_pause, pauses
+
+from cardcage.golden.commands import CHANNELS
+from cardcage.hdl.span_walker import SpanWalker
 
 
 def stride(interlace, units):

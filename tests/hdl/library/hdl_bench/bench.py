@@ -111,3 +111,47 @@ def rejects(component, match, **arguments):
             component(**arguments)
         del raised
         gc.collect()
+
+
+class Service(Agent):
+    """Pulses ``start`` ``rounds`` times, each after the last ``done`` and a pause.
+
+    ``started``, ``ended`` list the clocks.  ``done`` is asserted to come once for every start;
+    ``at_done(ctx)`` looks around then.
+    """
+
+    def __init__(self, dut, rounds=1, pause=lambda: 0, at_done=lambda ctx: None):
+        self._dut = dut
+        self._rounds = rounds
+        self._pause = pause
+        self._wait = pause()
+        self._at_done = at_done
+        self._clock = 0
+        self.started, self.ended = [], []
+
+    @property
+    def finished(self):
+        return len(self.ended) == self._rounds
+
+    def drive(self, ctx):
+        idle = len(self.started) == len(self.ended) < self._rounds
+        go = idle and self._wait == 0
+        if idle and self._wait:
+            self._wait -= 1
+        ctx.set(self._dut.start, go)
+        if go:
+            self.started.append(self._clock)
+
+    def sample(self, ctx):
+        if ctx.get(self._dut.done):
+            assert len(self.ended) < len(self.started), f"clock {self._clock}: done, not started"
+            assert self.started[-1] < self._clock
+            self.ended.append(self._clock)
+            self._wait = self._pause()
+            self._at_done(ctx)
+        self._clock += 1
+
+    @property
+    def clocks(self):
+        """From each start to its done, the clock of the start not counted."""
+        return [end - start for start, end in zip(self.started, self.ended, strict=True)]

@@ -3,6 +3,7 @@
 import random
 
 import numpy as np
+
 from cardcage.golden import setup
 from cardcage.golden.configuration import MachineConfiguration
 from cardcage.golden.display_list import DisplayList

@@ -44,7 +44,9 @@ class Source(Agent):
             self._wait = max(0, self._wait - 1)
             ctx.set(self._stream.valid, 0)
             return
-        ctx.set(self._stream.payload, self._items[len(self.taken)])
+        item = self._items[len(self.taken)]
+        payload = self._stream.payload
+        ctx.set(Value.cast(payload) if isinstance(item, int) else payload, item)
         ctx.set(self._stream.valid, 1)
         self._offering = True
 
