@@ -14,16 +14,19 @@ __all__ = ["DepthTest"]
 class DepthTest(wiring.Component):
     """A fragment strictly nearer than what is stored replaces it.
 
-    Three stages: *read* asks the memory unit; *compare* takes the answer one
-    clock later; *write* holds a winner until its unit takes it.  A fragment in
-    *compare* whose pixel is in *write* compares with that winner instead of the
-    stale answer, so two primitives may hit one pixel in consecutive clocks.  No
-    older write can be further on: a unit's single port does not read while a
-    write to it waits.
+    Four stages: *read* asks the memory unit, *answer* takes the stored depth
+    into a register, *compare* decides, *write* holds a winner until its unit
+    takes it.  A fragment in *compare* whose pixel is in *write*, or was written
+    last, compares with that winner instead of its stale answer; so primitives
+    may hit one pixel in consecutive clocks.  No older write can be missing from
+    the answer: a unit's single port does not read while a write to it waits.
 
-    Latency: a fragment taken in clock t is compared in t+1 and its write offered
-    in t+2.  Throughput: a fragment a clock while its unit has the port; on a
-    unit with one port each visible fragment takes two accesses.
+    A write is offered three clocks after its read.  Three is odd on purpose: on
+    two units in alternation reads and writes then never meet.
+
+    Latency: ``latency`` clocks from a fragment's read to its write.  Throughput:
+    a fragment a clock while its unit has the port: on one unit each visible
+    fragment takes two accesses, two units in turn take one a clock.
 
     Members
     -------
@@ -32,10 +35,10 @@ class DepthTest(wiring.Component):
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)
-        In this clock a comparison used a winner not yet in memory.
+        In this clock a comparison used the last or the waiting winner, not the answer.
     """
 
-    latency = 2
+    latency = 3
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -50,36 +53,53 @@ class DepthTest(wiring.Component):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
         layout = fragment_layout(self.configuration)
-        comparing, winning = Signal(), Signal()
-        compare, write = Signal(layout), Signal(layout)
+        answer, compare, write, written = (Signal(layout) for _ in range(4))
+        answering, comparing, winning, has_written = (Signal() for _ in range(4))
         fresh = Signal()  # the answer is on the lines in this clock only
         held, stored = (Signal(self.configuration.depth_bits) for _ in range(2))
-        same_pixel = Signal()
 
+        # Each stage moves on when the next one is empty or moves on itself.
         write_moves = ~winning | ~memory.write_busy
         compare_moves = ~comparing | write_moves
+        answer_moves = ~answering | compare_moves
         taken = self.fragments.valid & self.fragments.ready
         m.d.comb += [
-            memory.read.valid.eq(self.fragments.valid & compare_moves),
+            memory.read.valid.eq(self.fragments.valid & answer_moves),
             memory.read.unit.eq(fragment.unit),
             memory.read.address.eq(fragment.address),
-            self.fragments.ready.eq(compare_moves & ~memory.read_busy),
-            same_pixel.eq(winning & (write.unit == compare.unit)
-                          & (write.address == compare.address)),
-            stored.eq(Mux(same_pixel, write.depth, Mux(fresh, memory.read_data, held))),
-            self.forwarded.eq(comparing & compare_moves & same_pixel),
-            self.busy.eq(comparing | winning),
+            self.fragments.ready.eq(answer_moves & ~memory.read_busy),
+            self.busy.eq(answering | comparing | winning),
         ]
         m.d.sync += fresh.eq(taken)
+        with m.If(answer_moves):
+            m.d.sync += [answering.eq(taken), answer.eq(fragment)]
         with m.If(fresh):
             m.d.sync += held.eq(memory.read_data)
         with m.If(compare_moves):
-            m.d.sync += [comparing.eq(taken), compare.eq(fragment)]
-        with m.If(write_moves):
             m.d.sync += [
-                winning.eq(comparing & (compare.depth < stored)),
-                write.eq(compare),
+                comparing.eq(answering),
+                compare.eq(answer),
+                stored.eq(Mux(fresh, memory.read_data, held)),
             ]
+
+        def same_pixel(valid, other):
+            return (valid & (other.unit == compare.unit) & (other.address == compare.address))
+
+        waiting, done = Signal(), Signal()
+        nearest = Signal.like(stored)
+        m.d.comb += [
+            waiting.eq(same_pixel(winning, write)),
+            done.eq(same_pixel(has_written, written)),
+            nearest.eq(Mux(waiting, write.depth, Mux(done, written.depth, stored))),
+            self.forwarded.eq(comparing & compare_moves & (waiting | done)),
+        ]
+        with m.If(write_moves):
+            m.d.sync += [winning.eq(comparing & (compare.depth < nearest)), write.eq(compare)]
+            with m.If(winning):
+                m.d.sync += [has_written.eq(1), written.eq(write)]
+        with m.If(~self.busy):
+            # Every later read sees the write in memory, until something else clears it there.
+            m.d.sync += has_written.eq(0)
         m.d.comb += [
             memory.write.valid.eq(winning),
             memory.write.unit.eq(write.unit),

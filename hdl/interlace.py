@@ -12,7 +12,8 @@ __all__ = ["LatticeBlock", "PixelAddress", "ScanAddress", "unit_number"]
 
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
     """The number of the unit that holds pixel (x, y): some low bits of both, reordered."""
-    axes = {"x": x, "y": y}
+    # A picture may have fewer rows or columns than there are units along them.
+    axes = {"x": Cat(x, C(0, interlace.unit_bits)), "y": Cat(y, C(0, interlace.unit_bits))}
     return Cat(axes[axis][bit] for axis, bit in reversed(interlace.bit_order))
 
 

@@ -17,8 +17,8 @@ class Survey(wiring.Component):
     ways; where none answers, the lines read 0.  The units found are those up to
     the first that does not answer.
 
-    Latency: four clocks a unit, plus the waits for scan slots, plus two at the
-    unit that does not answer.
+    Latency, from ``start``: six clocks a unit, plus the waits for scan slots;
+    then three at the unit that does not answer, or one when all have.
 
     Members
     -------

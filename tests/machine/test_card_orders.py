@@ -33,7 +33,7 @@ def test_shares_need_not_be_equal_nor_present(cards):
 
 @pytest.mark.parametrize("units", [1, 2, 4, 8, 16])
 def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units):
-    """64 words: 16 units hold more than 16×16 needs, one unit holds 8×8."""
+    """32 words: eight units hold the 256 pixels, one unit an eighth of them."""
     simulation = draw(LIST, cards="P" + "M" * units, words=32, maximum_units=16)
     resolutions = {1: (8, 4), 2: (8, 8), 4: (16, 8), 8: (16, 16), 16: (16, 16)}
     assert (simulation.interlace.width, simulation.interlace.height) == resolutions[units]

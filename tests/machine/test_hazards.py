@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 from amaranth.sim import Simulator
-from frames import check, draw, random_list, triangles
+from frames import PIXEL, check, draw, random_list, triangles
 
 from cardcage.golden.configuration import configure
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches import pysim_engine
 from cardcage.testbenches.simulation import simulate
-
-PIXEL = [[2.1, 3.1], [3.4, 3.1], [2.1, 4.4]]  # covers the centre of pixel (2, 3) alone
 
 
 class Probe:

@@ -13,13 +13,19 @@ from frames import check_scans, draw, random_list, triangles
 MUTANTS = {
     "comparator takes the farther": (
         "depth_test", "DepthTest", ["processing_element"],
-        "compare.depth < stored", "compare.depth > stored"),
+        "compare.depth < nearest", "compare.depth > nearest"),
     "comparator lets ties replace": (
         "depth_test", "DepthTest", ["processing_element"],
-        "compare.depth < stored", "compare.depth <= stored"),
+        "compare.depth < nearest", "compare.depth <= nearest"),
     "comparison without forwarding": (
         "depth_test", "DepthTest", ["processing_element"],
-        "Mux(same_pixel, write.depth, ", "Mux(0, write.depth, "),
+        "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
+    "a winner written last is forgotten too soon": (
+        "depth_test", "DepthTest", ["processing_element"],
+        "has_written.eq(1)", "has_written.eq(0)"),
+    "a winner written last is remembered too long": (
+        "depth_test", "DepthTest", ["processing_element"],
+        "m.d.sync += has_written.eq(0)", "pass"),
     "depth steps one pixel instead of the lattice's stride": (
         "span_start", "SpanStart", ["processing_element"],
         "step_x << carried.x_stride_bits", "step_x"),

@@ -1,4 +1,4 @@
-"""Random display lists × random card orders: what leaves the machine is what golden draws."""
+"""Random display lists by random card orders: what leaves the machine is what golden draws."""
 
 import numpy as np
 from frames import check_bit_true, draw, triangles

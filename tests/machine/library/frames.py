@@ -1,5 +1,7 @@
 """One frame through the simulated machine, checked where it leaves: video pins and read-back."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cardcage.golden import bit_true, exact
@@ -11,6 +13,7 @@ from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import expected_video, frame_commands, simulate
 
 BACKGROUND = (12, 34, 56)
+PIXEL = [[2.1, 3.1], [3.4, 3.1], [2.1, 4.4]]  # covers the centre of pixel (2, 3) alone
 
 
 def triangles(position, depth, color, *, width=8, height=8, sub_bits=8, depth_bits=12,
@@ -19,7 +22,8 @@ def triangles(position, depth, color, *, width=8, height=8, sub_bits=8, depth_bi
     return DisplayList(
         width=width, height=height, sub_bits=sub_bits, depth_bits=depth_bits,
         background=background,
-        position=np.round(np.array(position, float).reshape(-1, 3, 2) * 2**sub_bits).astype(np.int32),
+        position=np.round(np.array(position, float).reshape(-1, 3, 2)
+                          * 2**sub_bits).astype(np.int32),
         depth=np.array(depth, np.int64).reshape(-1, 3),
         color=np.array(color, np.uint8).reshape(-1, 3, 3),
     )
@@ -37,6 +41,12 @@ def random_list(seed, count, *, width=8, height=8, depth_bits=12, flat=False):
         np.clip(position, low, -low - 1), source.integers(0, (1 << depth_bits) - 1, (count, 3)),
         color[:, :1].repeat(3, axis=1) if flat else color,
         width=width, height=height, depth_bits=depth_bits)
+
+
+def joined(first, second):
+    """One display list after the other."""
+    return replace(first, **{field: np.concatenate([getattr(first, field), getattr(second, field)])
+                             for field in ("position", "depth", "color")})
 
 
 def golden_picture(configuration, display_list):
@@ -74,7 +84,9 @@ def check_scans():
 
     Returns how many scans repeated the old picture while each of the three was drawn.
     """
-    quick, slow = random_list(1, 2), random_list(2, 150)
+    # The last pixel drawn is the next picture's first, and nearer than it is there.
+    quick = joined(random_list(1, 2), triangles([PIXEL], [[0] * 3], [[[1, 2, 3]] * 3]))
+    slow = joined(triangles([PIXEL], [[1] * 3], [[[250, 240, 230]] * 3]), random_list(2, 150))
     configuration = configure(slow, cards="PM", clocks_per_pixel=2)
     job = Job(
         configuration,
