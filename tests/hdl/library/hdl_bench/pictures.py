@@ -1,6 +1,8 @@
 """Small machines, random display lists, and which pixels a triangle covers, by definition."""
 
 import random
+from fractions import Fraction
+from math import floor
 
 import numpy as np
 
@@ -123,3 +125,42 @@ def covered(display_list, primitive, interlace):
             else:
                 pixels.add((x, y))
     return pixels
+
+
+def plane_value(display_list, primitive, values, x, y, interlace):
+    """The plane through three vertex ``values`` at a pixel's sample, rounded half up.
+
+    By barycentric weights, as rational numbers.
+    """
+    (ax, ay), (bx, by), (cx, cy) = (tuple(map(int, corner))
+                                    for corner in display_list.position[primitive])
+    unit_x, unit_y = (1 << (display_list.sub_bits + shift)
+                      for shift in (interlace.x_shift, interlace.y_shift))
+    px, py = x * unit_x + unit_x // 2, y * unit_y + unit_y // 2
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    at_b = (px - ax) * (cy - ay) - (cx - ax) * (py - ay)
+    at_c = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
+    first, second, third = map(int, values)
+    value = first + Fraction((second - first) * at_b + (third - first) * at_c, area)
+    return floor(value + Fraction(1, 2))
+
+
+def exact_words(display_list, interlace, *, flat):
+    """(depth, color) of every pixel with something drawn on it, and all fragments' pixels.
+
+    The winner is the least (depth, primitive); brute force by the definitions.
+    """
+    words, fragments = {}, []
+    for primitive in range(display_list.triangles):
+        for x, y in covered(display_list, primitive, interlace):
+            fragments.append((x, y))
+            depth = plane_value(display_list, primitive, display_list.depth[primitive], x, y,
+                                interlace)
+            if (x, y) in words and words[x, y][0] <= depth:
+                continue
+            colors = display_list.color[primitive]
+            channels = (map(int, colors[0]) if flat else
+                        (plane_value(display_list, primitive, colors[:, channel], x, y, interlace)
+                         for channel in range(3)))
+            words[x, y] = depth, sum(value << 8 * place for place, value in enumerate(channels))
+    return words, fragments

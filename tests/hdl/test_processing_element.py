@@ -1,0 +1,258 @@
+"""A processing element card with software memory units to its right."""
+
+import random
+
+import pytest
+from amaranth.hdl import Value
+from hdl_bench.bench import Agent, Drive, Watch, simulate
+from hdl_bench.memory import MemoryLines
+from hdl_bench.pictures import (
+    exact_words,
+    prepare,
+    prepared_values,
+    random_triangles,
+    small_machine,
+)
+from hdl_bench.streams import Sink, Source, pauses
+
+from cardcage.golden.commands import ResponseKind
+from cardcage.golden.setup import scene_fraction_bits
+from cardcage.hdl.layouts import Operation
+from cardcage.hdl.processing_element import ProcessingElement
+
+SURVEY = {"operation": Operation.SURVEY}
+READ_DEPTH = {"operation": Operation.READ_DEPTH}
+READ_COUNTERS = {"operation": Operation.READ_COUNTERS}
+
+
+def clear(background, front=0):
+    red, green, blue = background
+    return {"operation": Operation.CLEAR,
+            "body": {"clear": {"red": red, "green": green, "blue": blue, "front": front}}}
+
+
+def draw(values):
+    return {"operation": Operation.DRAW, "body": {"draw": values}}
+
+
+class Announcer(Agent):
+    """Strobes packets while the card is ready; waits for its done where there is ``None``.
+
+    As the controller does, it looks at done some clocks after a strobe only.
+    """
+
+    def __init__(self, dut, packets, pause=lambda: 0):
+        self.dut = dut
+        self.packets = list(packets)
+        self.pause = pause
+        self.wait = 0
+        self.settle = 0
+        self.clock = 0
+        self.strobes = []
+        self.dones = []
+
+    @property
+    def finished(self):
+        return not self.packets
+
+    def drive(self, ctx):
+        lines = self.dut.broadcast
+        ctx.set(lines.strobe, 0)
+        if not self.packets or self.settle or self.wait:
+            self.wait = max(0, self.wait - 1)
+            return
+        if self.packets[0] is not None and ctx.get(lines.ready):
+            ctx.set(lines.packet, self.packets.pop(0))
+            ctx.set(lines.strobe, 1)
+            self.strobes.append(self.clock)
+            self.wait = self.pause()
+            if self.packets and self.packets[0] is None:
+                self.settle = 4
+
+    def sample(self, ctx):
+        waiting = self.packets and self.packets[0] is None and self.settle == 0
+        if waiting and ctx.get(self.dut.broadcast.done):
+            self.packets.pop(0)
+            self.dones.append(self.clock)
+        self.settle = max(0, self.settle - 1)
+        self.clock += 1
+
+
+class Bench:
+    """One card in a slot: number of units to the left, its domain, and what it is told."""
+
+    def __init__(self, configuration, first, end, packets, *, responses=0, seed=0, scan=0.0,
+                 pause=lambda: 0, right=()):
+        self.dut = dut = ProcessingElement(configuration=configuration)
+        self.memory = MemoryLines(dut.right.lines, first=first, end=end,
+                                  words=configuration.words, seed=seed, scan=scan,
+                                  depth_bits=configuration.depth_bits)
+        self.announcer = Announcer(dut, packets, pause)
+        self.sink = Sink(dut.left.response, responses + len(right), pause)
+        self.source = Source(dut.right.response, right, pause)
+
+        def lines(ctx, clock):
+            ctx.set(dut.left.id, first)
+            ctx.set(dut.total, configuration.units)
+            # What comes from the left is not for it.
+            ctx.set(Value.cast(dut.left.lines.write), -1)
+            ctx.set(Value.cast(dut.left.lines.read), -1)
+
+        def watch(ctx, clock):
+            assert ctx.get(dut.right.id) == first
+            assert ctx.get(dut.left.lines.read_data) == 0
+            assert not ctx.get(dut.left.lines.read_busy) | ctx.get(dut.left.lines.write_busy)
+
+        self.clocks = simulate(dut, Drive(lines), self.announcer, self.memory, self.source,
+                               self.sink, Watch(watch), after=4)
+
+    @property
+    def responses(self):
+        return [(ResponseKind(item.kind), item.value) for item in self.sink.items]
+
+
+MACHINES = {
+    "all of two, flat": ("PMM", (0, 2), "flat", {}),
+    "all of four, gouraud": ("PMMMM", (0, 4), "gouraud", {}),
+    "second half of four": ("PMMPMM", (2, 4), "flat", {}),
+    "three of four": ("PMPMMM", (1, 4), "flat", {}),
+    "three of eight, coarser": ("PMMPMMMPMMM", (2, 5), "flat", {"words": 4}),
+}
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("seed", range(2))
+def test_boot_two_frames_and_their_reports(machine, seed):
+    cards, (first, end), shading, changes = MACHINES[machine]
+    lists = [random_triangles(f"{machine} {seed} {frame}", 14, width=8, height=8,
+                              flat=shading == "flat") for frame in range(2)]
+    fraction_bits = max(
+        scene_fraction_bits(scene, x_shift=x_shift, y_shift=y_shift)
+        for scene in lists for x_shift, y_shift in ((0, 0), (0, 1), (1, 1)))
+    configuration = small_machine(cards, shading=shading, fraction_bits=fraction_bits, **changes)
+    interlace = configuration.interlace
+    packets = [SURVEY, None, clear((1, 2, 3), front=1), None]
+    expected = [(ResponseKind.DOMAIN, first << 16 | end - first)]
+    words = range(interlace.words)
+    for scene in lists:
+        packets += [clear(scene.background)]
+        packets += [draw(values) for values in
+                    prepared_values(configuration, prepare(configuration, scene))]
+        packets += [None, READ_DEPTH, None, READ_COUNTERS, None]
+        drawn, fragments = exact_words(scene, interlace, flat=shading == "flat")
+        own = [pixel for pixel in fragments if first <= interlace.unit(*pixel) < end]
+        background = (1 << configuration.depth_bits) - 1
+        expected += [(ResponseKind.DEPTH, drawn.get(interlace.pixel(unit, address),
+                                                    (background, 0))[0])
+                     for unit in range(first, end) for address in words]
+        expected += [(ResponseKind.FRAGMENTS, len(own)), (ResponseKind.BUSY, None)]
+    bench = Bench(configuration, first, end, packets, responses=len(expected), seed=seed,
+                  scan=0.3 * seed, pause=pauses(seed) if seed else lambda: 0)
+    for (kind, value), (wanted, number) in zip(bench.responses, expected, strict=True):
+        assert kind == wanted
+        assert number is None or value == number, kind
+    busy = [value for kind, value in bench.responses if kind == ResponseKind.BUSY]
+    # A clear takes a clock a word, and a fragment one or more.
+    counts = [value for kind, value in bench.responses if kind == ResponseKind.FRAGMENTS]
+    assert all(cycles >= interlace.words + count
+               for cycles, count in zip(busy, counts, strict=True))
+    assert all(count > 5 for count in counts)
+    back = {place: color for place, color in bench.memory.back.items() if place[1] in words}
+    background = sum(value << 8 * place for place, value in enumerate(lists[1].background))
+    assert back == {(unit, address): drawn.get(interlace.pixel(unit, address),
+                                               (0, background))[1]
+                    for unit in range(first, end) for address in words}
+    assert {color for place, color in bench.memory.front.items() if place[1] in words} == {
+        0x030201}
+
+
+def test_an_empty_domain_reports_none_and_is_done():
+    configuration = small_machine("PPM")
+    scene = random_triangles(3, 10, width=8, height=8, flat=True)
+    packets = [SURVEY, None, clear((0, 0, 0)),
+               *(draw(values) for values in
+                 prepared_values(configuration, prepare(configuration, scene))),
+               None, READ_DEPTH, None, READ_COUNTERS, None]
+    bench = Bench(configuration, 0, 0, packets, responses=3)
+    assert bench.responses[:2] == [(ResponseKind.DOMAIN, 0), (ResponseKind.FRAGMENTS, 0)]
+    assert len(bench.responses) == 3
+
+
+def test_own_responses_first_then_those_from_the_right():
+    configuration = small_machine("PMPM", 4, 4)
+    right = [{"kind": 7, "value": value} for value in range(12)]
+    bench = Bench(configuration, 0, 1, [SURVEY, None], responses=1, right=right,
+                  pause=pauses("right"))
+    passed = [(ResponseKind.DEPTH, value) for value in range(12)]
+    kinds = [kind for kind, _ in bench.responses]
+    # Words that came before it had anything to say may have passed; then its own, then the rest.
+    assert [answer for answer in bench.responses if answer[0] == ResponseKind.DEPTH] == passed
+    assert bench.responses[kinds.index(ResponseKind.DOMAIN)] == (ResponseKind.DOMAIN, 1)
+
+
+def rectangle(configuration, left, top, right, bottom):
+    """A prepared triangle that covers every pixel of a rectangle: vertical edges."""
+    edge = {"remainder": 0, "column_step": 0, "remainder_step": 0, "denominator": 1}
+    return {"top": top, "middle": bottom, "bottom": bottom, "left": left, "right": right,
+            "long_edge_left": 1, "long": {"column": left, **edge},
+            "upper": {"column": right, **edge}, "lower": {"column": right, **edge},
+            "planes": {"depth": {"start": 0, "step_x": 0, "step_y": 0},
+                       "red": 1, "green": 2, "blue": 3}}
+
+
+@pytest.mark.parametrize(("cards", "first", "end", "stride_bits"), [
+    ("PM", 0, 1, 0), ("PMPM", 0, 1, 1), ("PMPMMM", 0, 1, 1), ("PMPMMMMMMM", 0, 1, 2)])
+def test_latency(cards, first, end, stride_bits):
+    """From a triangle's strobe to the read of its first fragment."""
+    configuration = small_machine(cards)
+    packets = [SURVEY, None, draw(rectangle(configuration, 0, 0, 8, 8)), None]
+    bench = Bench(configuration, first, end, packets, responses=1)
+    # The survey reads each unit twice, and once more where one is silent.
+    surveyed = 2 * (end - first) + (end < configuration.units)
+    reads = bench.memory.reads[surveyed:]
+    assert reads[0][0] - bench.announcer.strobes[1] == ProcessingElement.latency + stride_bits
+    assert ProcessingElement.latency == 7
+
+
+def test_throughput_is_a_fragment_a_clock_in_long_rows():
+    """Hidden fragments need one access each; rows and triangles hide behind one another."""
+    configuration = small_machine("PM", 16, 8)
+    hidden = rectangle(configuration, 0, 0, 16, 8)
+    hidden["planes"]["depth"]["start"] = 255 << configuration.fraction_bits
+    near = rectangle(configuration, 0, 0, 16, 8)
+    packets = [SURVEY, None, clear((0, 0, 0)), None, draw(near), None, *[draw(hidden)] * 4, None]
+    bench = Bench(configuration, 0, 1, packets, responses=1)
+    reads = [read[0] for read in bench.memory.reads[2 + 128:]]
+    assert len(reads) == 4 * 128
+    assert reads == list(range(reads[0], reads[0] + 4 * 128))
+
+
+def test_the_fifo_holds_what_it_says():
+    """While a long triangle is drawn, ``fifo_depth`` packets and no more are taken."""
+    for depth in (2, 5):
+        configuration = small_machine("PM", 16, 8, fifo_depth=depth)
+        packets = [SURVEY, None, clear((0, 0, 0)), None,
+                   *[draw(rectangle(configuration, 0, 0, 16, 8))] * (depth + 3), None]
+        bench = Bench(configuration, 0, 1, packets, responses=1)
+        strobes = bench.announcer.strobes[2:]
+        # The triangle being drawn is still in the FIFO, at its output.
+        early = [clock for clock in strobes if clock < strobes[0] + 100]
+        assert len(early) == depth
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_done_is_low_until_everything_is_written_and_sent(seed):
+    pick = random.Random(f"done {seed}")
+    configuration = small_machine("PMM")
+    packets = [SURVEY, None, clear((9, 9, 9)), None]
+    for _ in range(6):
+        corner = pick.randrange(7), pick.randrange(7)
+        packets += [draw(rectangle(configuration, *corner, corner[0] + 1, corner[1] + 1)), None]
+    bench = Bench(configuration, 0, 2, packets, responses=1, seed=seed, scan=0.6)
+    for strobe, done in zip(bench.announcer.strobes, bench.announcer.dones, strict=True):
+        later = [write[0] for write in bench.memory.writes if strobe < write[0]]
+        following = [clock for clock in bench.announcer.strobes if clock > strobe]
+        for write in later:
+            if not following or write < following[0]:
+                assert write < done
+    assert bench.sink.clocks[0] < bench.announcer.dones[0]
