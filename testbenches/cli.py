@@ -17,6 +17,9 @@ from .render import DEFAULT_SCENE, RenderOptions, prepare_render
 from .render_summary import render_summary
 from .scenes_table import scenes_json, scenes_table, scenes_text
 
+#: Some minutes of simulation: say so before.
+PATIENCE_CYCLES = 300_000
+
 HELP_SETTINGS = {"max_content_width": 100, "help_option_names": ["-h", "--help"]}
 
 
@@ -86,7 +89,10 @@ def render(command_line: str, scene: str, waveform: Path | None, out: Path,
     job = prepare_render(scene, RenderOptions(**options), command_line)
     for warning in job.warnings:
         warn(warning)
-    with progress_bar(job.expected_cycles()) as progress:
+    expected = job.expected_cycles()
+    if expected > PATIENCE_CYCLES:
+        warn(f"about {expected:,} cycles to simulate: this takes long; a smaller --size is quicker")
+    with progress_bar(expected) as progress:
         rendering = job.run(out, waveform, progress)
     for warning in rendering.warnings[len(job.warnings):]:
         warn(warning)

@@ -86,11 +86,13 @@ class RenderJob:
         listed = self.scene.display_list
         fragments = int(depth_complexity(listed, x_shift=interlace.x_shift,
                                          y_shift=interlace.y_shift).sum())
-        boot = 200 + interlace.words
-        draw = 2 * fragments // configuration.processing_elements + 3 * listed.triangles
+        boot = 100 + interlace.words
+        # Each word is cleared; then either memory or the broadcast of triangles is the bottleneck.
+        draw = 1.5 * interlace.words + max(
+            2.5 * fragments / configuration.processing_elements, 2.8 * listed.triangles)
         scan = configuration.cycles_per_scan
         # The picture is shown from the scan after it is drawn, and that one is watched whole.
-        return ((boot + draw) // scan + 2) * scan
+        return (int(boot + draw) // scan + 2) * scan
 
     def run(self, out: Path | None = None, waveform: Path | None = None,
             progress: Progress | None = None) -> Rendering:
@@ -200,6 +202,6 @@ def _resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]
     interlace = configuration.interlace
     if (interlace.width, interlace.height) == (configuration.width, configuration.height):
         return ()
-    return (f"{configuration.units} memory units of {configuration.words} words hold "
-            f"{interlace.width}x{interlace.height} pixels, not {configuration.width}x"
-            f"{configuration.height}: the picture is coarser",)
+    return (f"{configuration.words} words in each memory unit hold {interlace.width}x"
+            f"{interlace.height} pixels, not {configuration.width}x{configuration.height}: the "
+            "picture is coarser",)

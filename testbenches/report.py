@@ -31,6 +31,16 @@ class CardGroup:
     element: int | None
     units: range
 
+    @property
+    def caption(self) -> str:
+        if self.element is None:
+            return "owned by nobody"
+        if not self.units:
+            return "owns none"
+        if len(self.units) == 1:
+            return f"owns {self.units[0]}"
+        return f"owns {self.units[0]} to {self.units[-1]}"
+
 
 def write_report(rendering: Rendering, folder: Path) -> None:
     """Write ``REPORT_FILES`` to ``folder``, which exists."""

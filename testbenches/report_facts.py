@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..golden.cards import domains
 from .compare import FirstDifference, PixelValue
 from .rendering import Rendering
 
@@ -60,7 +59,8 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
     return {
         "cards": configuration.cards,
         "memory_units": configuration.units,
-        "owned_units": sum(count for _, count in domains(configuration.cards)),
+        "total_units": rendering.simulation.total,
+        "owned_units": rendering.simulation.owned,
         "processing_elements": configuration.processing_elements,
         "width": configuration.width,
         "height": configuration.height,

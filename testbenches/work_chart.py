@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
 from .simulation import Work
 
@@ -33,6 +34,7 @@ def work_chart(work: Sequence[Work]) -> str:
     with rc_context(style):
         height = 1.1 + min(0.34 * len(work), 12.0)
         figure = Figure(figsize=(9.0, height), layout="constrained")
+        figure.get_layout_engine().set(wspace=0.06)
         fragments, busy = figure.subplots(1, 2, sharey=True)
         _bars(fragments, [element.fragments for element in work], FRAGMENTS_COLOR,
               "fragments tested")
@@ -52,6 +54,8 @@ def _bars(axes: Axes, values: Sequence[int], color: str, label: str) -> None:
     bars = axes.barh(range(len(values)), values, color=color, height=0.7)
     axes.set_xlabel(label)
     axes.set_xlim(0, max([*values, 1]) * 1.18)
+    axes.xaxis.set_major_locator(MaxNLocator(6, integer=True))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(axis="y", length=0)
     if len(values) <= _LABELLED_ELEMENTS:
