@@ -83,7 +83,7 @@ class DisplayList:
         limit = 1 << (self.coordinate_bits - 1)
         if count and not (-limit <= self.position.min() and self.position.max() < limit):
             raise wrong("position", f"must lie in [{-limit}, {limit}): clip to the guard band")
-        if count and not (0 <= self.depth.min() and self.depth.max() <= self.depth_limit):
+        if count and not (self.depth.min() >= 0 and self.depth.max() <= self.depth_limit):
             raise wrong("depth", f"must lie in [0, {self.depth_limit}]")
 
     @property

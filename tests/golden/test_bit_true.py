@@ -6,12 +6,13 @@ from math import ceil
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from cardcage.golden import bit_true, exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
 from cardcage.golden.setup import prepare, scene_fraction_bits
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 SHIFTS = [(0, 0), (0, 1), (1, 1), (1, 2)]
 NAMES = ("color", "depth", "winner")

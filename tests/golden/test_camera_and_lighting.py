@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+
 from cardcage.golden.camera import Camera, framing_camera, transform
 from cardcage.golden.errors import InputError
 from cardcage.golden.lighting import Lighting, lit_corners

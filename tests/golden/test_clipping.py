@@ -4,6 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from cardcage.golden.clipping import clip, intersections
 from cardcage.golden.quantise import (
     PictureFormat,
@@ -12,8 +15,6 @@ from cardcage.golden.quantise import (
     quantise_positions,
     round_half_up,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 PICTURE = PictureFormat(64, 48)
 BAND = PICTURE.guard_band

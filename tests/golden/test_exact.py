@@ -5,11 +5,12 @@ from math import floor
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 SHIFTS = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2), (2, 3)]
 

@@ -7,6 +7,7 @@ every triangle here has one depth, well apart from the others'.
 
 import numpy as np
 import pytest
+
 from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList
 

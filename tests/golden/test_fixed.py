@@ -5,10 +5,11 @@ from math import ceil, floor
 
 import numpy as np
 import pytest
-from cardcage.golden import fixed
-from cardcage.golden.errors import InputError
 from hypothesis import given
 from hypothesis import strategies as st
+
+from cardcage.golden import fixed
+from cardcage.golden.errors import InputError
 
 NUMBERS = range(-70, 71)
 KINDS = ("int", "int64", "object")

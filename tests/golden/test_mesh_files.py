@@ -7,6 +7,7 @@ import logging
 import numpy as np
 import pytest
 import trimesh
+
 from cardcage.golden.errors import InputError
 from cardcage.golden.mesh import BASE_COLOR, UP_Y, UP_Z, Mesh, corner_normals, face_normals
 from cardcage.golden.mesh_files import MESH_EXTENSIONS, load_mesh

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from cardcage.golden.errors import InputError
 from cardcage.golden.mesh import Mesh, corner_normals, cross, dot, edge_vectors, face_normals
 from cardcage.golden.quantise import PictureFormat
@@ -23,8 +26,6 @@ from cardcage.golden.scenes.sphereflake import child_directions, sphereflake, sp
 from cardcage.golden.scenes.spheres import spheres
 from cardcage.golden.scenes.teapot import teapot, teapot_parts
 from cardcage.golden.scenes.tetra import tetra
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 
 def directed_edges(faces):

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+
 from cardcage.golden import exact, fixed
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
