@@ -1,0 +1,316 @@
+"""The controller with a cage in software: boot, broadcasts, done, swap, answers."""
+
+import random
+from collections import deque
+from itertools import pairwise
+
+import pytest
+from amaranth.hdl import Value
+from hdl_bench.bench import Agent, Drive, simulate
+from hdl_bench.pictures import prepare, random_triangles, small_machine
+from hdl_bench.streams import Sink, Source, no_pause, pauses
+
+from cardcage.golden import commands
+from cardcage.golden.commands import Fault, Opcode, ResponseKind
+from cardcage.hdl.central_broadcast_controller import CentralBroadcastController
+from cardcage.hdl.layouts import Operation
+
+DEPTHS = [11, 22, 33]
+COUNTS = [(ResponseKind.FRAGMENTS, 5), (ResponseKind.BUSY, 6)]
+
+
+class Cage(Agent):
+    """All processing elements as one: takes packets while ready, works on each for a while,
+    then sends its answers; done when nothing is left, which shows three clocks late."""
+
+    LATE = 3
+
+    def __init__(self, dut, *, domains, seed=None, work=0):
+        self.dut = dut
+        self.domains = domains
+        self.pick = random.Random(f"cage {seed}")
+        self.stalls = seed is not None
+        self.work = work
+        self.queue = deque()
+        self.left = 0
+        self.answers = deque()
+        self.offered = None
+        self.late = deque([True] * self.LATE, maxlen=self.LATE)
+        self.packets = []  # (clock, operation, word)
+        self.idle = []
+        self.clock = 0
+
+    @property
+    def finished(self):
+        return not (self.queue or self.answers or self.left)
+
+    def drive(self, ctx):
+        lines, response = self.dut.broadcast, self.dut.right.response
+        self.ready = len(self.queue) < 3 and not (self.stalls and self.pick.random() < 0.4)
+        ctx.set(lines.ready, self.ready)
+        self.idle.append(self.finished)
+        ctx.set(lines.done, self.finished and self.late[0])
+        if self.offered is None and self.answers and not (
+                self.stalls and self.pick.random() < 0.3):
+            self.offered = self.answers[0]
+            ctx.set(response.payload, dict(zip(("kind", "value"), self.offered, strict=True)))
+        ctx.set(response.valid, self.offered is not None)
+
+    def sample(self, ctx):
+        lines, response = self.dut.broadcast, self.dut.right.response
+        if self.offered is not None and ctx.get(response.ready):
+            self.answers.popleft()
+            self.offered = None
+        self.late.append(self.finished)
+        if self.left:
+            self.left -= 1
+            if self.left == 0:
+                self.answers += self.answer(self.queue.popleft())
+        elif self.queue and not self.answers:
+            self.left = 1 + (self.pick.randrange(self.work) if self.work else 0)
+        if ctx.get(lines.strobe):
+            assert self.ready, f"clock {self.clock}: a strobe while not all are ready"
+            packet = ctx.get(lines.packet)
+            self.packets.append((self.clock, packet.operation, ctx.get(Value.cast(lines.packet))))
+            self.queue.append(packet.operation)
+            self.late = deque([*list(self.late)[1:], False], maxlen=self.LATE)
+        self.clock += 1
+
+    def answer(self, operation):
+        if operation == Operation.SURVEY:
+            return [(ResponseKind.DOMAIN, first << 16 | count) for first, count in self.domains]
+        if operation == Operation.READ_DEPTH:
+            return [(ResponseKind.DEPTH, depth) for depth in DEPTHS]
+        return COUNTS * len(self.domains) if operation == Operation.READ_COUNTERS else []
+
+
+class Scans(Agent):
+    """Pulses ``scan_start`` every ``period`` clocks, and looks at ``front`` around them."""
+
+    def __init__(self, dut, period):
+        self.dut = dut
+        self.period = period
+        self.clock = 0
+        self.starts, self.fronts = [], []
+
+    def drive(self, ctx):
+        start = self.clock % self.period == self.period - 1
+        ctx.set(self.dut.scan_start, start)
+        if start:
+            self.starts.append(self.clock)
+
+    def sample(self, ctx):
+        self.fronts.append(ctx.get(self.dut.front))
+        self.clock += 1
+
+    @property
+    def swaps(self):
+        """Clocks at whose end the front changed."""
+        return [clock for clock, (a, b) in enumerate(pairwise(self.fronts)) if a != b]
+
+
+class Run:
+    def __init__(self, configuration, words, responses, *, total=None, domains=((0, 1),),
+                 seed=None, work=0, period=50):
+        self.dut = dut = CentralBroadcastController(configuration=configuration)
+        total = configuration.units if total is None else total
+        pause = (lambda end: no_pause) if seed is None else (lambda end: pauses(f"{end} {seed}"))
+        self.source = Source(dut.commands, words, pause("in"))
+        self.sink = Sink(dut.responses, responses, pause("out"))
+        self.cage = Cage(dut, domains=domains, seed=seed, work=work)
+        self.scans = Scans(dut, period)
+
+        def lines(ctx, clock):
+            ctx.set(dut.total, total)
+            assert ctx.get(dut.right.id) == 0
+
+        simulate(dut, Drive(lines), self.source, self.sink, self.cage, self.scans, after=10)
+
+    @property
+    def responses(self):
+        return [(ResponseKind(item.kind), item.value) for item in self.sink.items]
+
+    def clock_of(self, kind, count=0):
+        clocks = [clock for clock, (found, _) in zip(self.sink.clocks, self.responses, strict=True)
+                  if found == kind]
+        return clocks[count]
+
+    def fields(self, number, variant=None):
+        """Operation of a packet, and its body's bits."""
+        _, operation, word = self.cage.packets[number]
+        layout = Value.cast(self.dut.broadcast.packet)
+        assert len(layout) >= word.bit_length()
+        body = self.dut.broadcast.packet.shape()["body"]
+        return operation, word >> body.offset & (1 << body.width) - 1
+
+
+def boot_responses(configuration, domains, total=None):
+    owned = sum(count for _, count in domains)
+    total = configuration.units if total is None else total
+    interlace = configuration.interlace
+    return [*((ResponseKind.DOMAIN, first << 16 | count) for first, count in domains),
+            (ResponseKind.UNITS, owned << 16 | total),
+            (ResponseKind.PICTURE, interlace.height << 16 | interlace.width)]
+
+
+BOOTS = {
+    "one": ("PM", {}, [(0, 1)]),
+    "two": ("PMMPMM", {}, [(0, 2), (2, 2)]),
+    "an empty domain": ("PPMMPMM", {}, [(0, 0), (0, 2), (2, 2)]),
+    "orphans": ("MMPMM", {"allow_orphans": True}, [(2, 2)]),
+    "coarser": ("PMMMM", {"words": 3}, [(0, 4)]),
+    "not square": ("PMM", {"width": 16, "height": 4}, [(0, 2)]),
+}
+
+
+@pytest.mark.parametrize("name", BOOTS)
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_boot(name, seed):
+    cards, changes, domains = BOOTS[name]
+    configuration = small_machine(cards, **changes)
+    expected = boot_responses(configuration, domains)
+    run = Run(configuration, [], len(expected) + 1, domains=domains, seed=seed,
+              work=0 if seed is None else 20)
+    assert run.responses[:-1] == expected
+    kind, cycles = run.responses[-1]
+    assert kind == ResponseKind.BOOTED
+    # Cycles since reset, when it was offered: before it was taken, after the report before.
+    assert run.sink.clocks[-2] < cycles <= run.sink.clocks[-1]
+    assert [operation for _, operation, _ in run.cage.packets] == [
+        Operation.SURVEY, Operation.CLEAR]
+    assert run.fields(1) == (Operation.CLEAR, 1 << 24)  # black, the front picture, too
+    assert not run.source.taken
+    assert not run.scans.swaps
+
+
+@pytest.mark.parametrize("total", [0, 3, 5, 7])
+@pytest.mark.parametrize("seed", [None, 1])
+def test_an_unsupported_number_of_units_is_refused_and_does_not_hang(total, seed):
+    configuration = small_machine("PM", maximum_units=7)
+    words = [commands.frame_start((1, 2, 3)), commands.command(Opcode.FRAME_END),
+             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.PREPARED_TRIANGLE)]
+    fault = (ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)
+    run = Run(configuration, words, 2 + 1 + len(words), total=total, domains=[(0, total)],
+              seed=seed)
+    assert run.responses == [(ResponseKind.DOMAIN, total),
+                             (ResponseKind.UNITS, total << 16 | total),
+                             *[fault] * (1 + len(words))]
+    # Nothing is drawn, nothing is cleared.
+    assert [operation for _, operation, _ in run.cage.packets] == [Operation.SURVEY]
+
+
+@pytest.mark.parametrize("opcode", [0, Opcode.TRIANGLE, 7, 15])
+def test_unknown_commands_are_answered_and_passed_over(opcode):
+    configuration = small_machine("PM")
+    unknown = opcode | 0x1234 << commands.BODY_OFFSET
+    words = [unknown, commands.command(Opcode.READ_DEPTH), unknown]
+    run = Run(configuration, words, 4 + 1 + len(DEPTHS) + 1)
+    fault = (ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)
+    assert run.responses[4:] == [
+        fault, *((ResponseKind.DEPTH, depth) for depth in DEPTHS), fault]
+
+
+def triangles(configuration, seed, count=12):
+    scene = random_triangles(seed, count, width=8, height=8, flat=True)
+    return list(commands.prepared_triangles(configuration, prepare(configuration, scene)))
+
+
+@pytest.mark.parametrize("seed", [None, 0, 1, 2, 3])
+def test_frames(seed):
+    """Packets in order; drawn when all are done, shown from the next scan's start on."""
+    pick = random.Random(f"frames {seed}")
+    configuration = small_machine("PM")
+    words, expected, packets = [], [], [Operation.SURVEY, Operation.CLEAR]
+    frames, bodies = 4, [0, 1 << 24]
+    for frame in range(frames):
+        color = tuple(pick.randrange(256) for _ in range(3))
+        drawn = triangles(configuration, f"{seed} {frame}")
+        words += [commands.frame_start(color), *drawn, commands.command(Opcode.FRAME_END)]
+        packets += [Operation.CLEAR] + [Operation.DRAW] * len(drawn)
+        bodies += [sum(value << 8 * place for place, value in enumerate(color))]
+        bodies += [word >> commands.BODY_OFFSET for word in drawn]
+        expected += [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
+        if frame % 2:
+            words += [commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+            packets += [Operation.READ_DEPTH, Operation.READ_COUNTERS]
+            bodies += [None, None]
+            expected += [ResponseKind.DEPTH] * len(DEPTHS) + [kind for kind, _ in COUNTS]
+    run = Run(configuration, words, 4 + len(expected), seed=seed,
+              work=0 if seed is None else 30, period=40)
+    assert [kind for kind, _ in run.responses[4:]] == expected
+    assert [operation for _, operation, _ in run.cage.packets] == packets
+    for number, body in enumerate(bodies[2:], 2):
+        if body is not None:
+            assert run.fields(number)[1] == body
+
+    assert len(run.scans.swaps) == frames
+    opcodes = [word & 15 for word in words]
+    starts = [clock for clock, opcode in zip(run.source.taken, opcodes, strict=True)
+              if opcode == Opcode.FRAME_START]
+    for frame, swap in enumerate(run.scans.swaps):
+        began = starts[frame]
+        drawn, shown = (run.clock_of(kind, frame) for kind in (ResponseKind.FRAME_DRAWN,
+                                                               ResponseKind.FRAME_SHOWN))
+        # Only at a scan's start, the first one after the report of the finished picture.
+        assert swap == min(clock for clock in run.scans.starts if clock > drawn)
+        assert shown > swap
+        # No packet of this frame is still at work when it is drawn, nor follows before the swap.
+        assert run.cage.idle[drawn]
+        assert not any(drawn < clock <= swap for clock, _, _ in run.cage.packets)
+        values = dict(run.responses[4:][expected.index(ResponseKind.FRAME_DRAWN):][:0])
+        values = [value for kind, value in run.responses if kind == ResponseKind.FRAME_SHOWN]
+        # Scans that began with the old picture.
+        assert values[frame] == sum(began <= clock < swap for clock in run.scans.starts)
+        cycles = [value for kind, value in run.responses if kind == ResponseKind.FRAME_DRAWN]
+        last = max(clock for clock, _, _ in run.cage.packets if clock <= drawn)
+        done = next(clock for clock in range(last + 1, drawn + 1) if run.cage.idle[clock])
+        # From the frame start to done, known within the controller's settling time.
+        assert 0 <= cycles[frame] - (done - began) <= 2 * Cage.LATE + 2
+        assert cycles[frame] < drawn - began + 1
+
+
+def test_a_picture_that_takes_longer_than_a_scan_is_shown_late():
+    configuration = small_machine("PM")
+    words = [commands.frame_start((0, 0, 0)), *triangles(configuration, "late"),
+             commands.command(Opcode.FRAME_END)]
+    run = Run(configuration, words, 6, work=40, period=25)
+    shown = dict(run.responses)[ResponseKind.FRAME_SHOWN]
+    assert shown > 2
+    assert len(run.scans.swaps) == 1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_read_back_waits_for_done(seed):
+    configuration = small_machine("PM")
+    words = [commands.frame_start((0, 0, 0)), *triangles(configuration, seed, 5),
+             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS),
+             commands.command(Opcode.READ_DEPTH)]
+    run = Run(configuration, words, 4 + 2 * len(DEPTHS) + 2, seed=seed, work=25)
+    for clock, operation, _ in run.cage.packets:
+        if operation in (Operation.READ_DEPTH, Operation.READ_COUNTERS):
+            assert run.cage.idle[clock]
+    kinds = [kind for kind, _ in run.responses[4:]]
+    assert kinds == [*[ResponseKind.DEPTH] * 3, *(kind for kind, _ in COUNTS),
+                     *[ResponseKind.DEPTH] * 3]
+
+
+def test_latency_and_throughput():
+    """A prepared triangle is broadcast in the clock in which it is taken; one every clock."""
+    configuration = small_machine("PM")
+    words = triangles(configuration, "speed", 30)
+
+    class Wide(Cage):
+        """Room for everything."""
+
+        def drive(self, ctx):
+            super().drive(ctx)
+            self.ready = True
+            ctx.set(self.dut.broadcast.ready, 1)
+
+    dut = CentralBroadcastController(configuration=configuration)
+    cage, source = Wide(dut, domains=[(0, 1)]), Source(dut.commands, words)
+    simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, 1)), source,
+             Sink(dut.responses, 4), cage)
+    clocks = [clock for clock, operation, _ in cage.packets if operation == Operation.DRAW]
+    assert clocks == source.taken
+    assert clocks == list(range(clocks[0], clocks[0] + len(words)))
