@@ -16,6 +16,9 @@ from .report_facts import report_facts
 from .report_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
 from .work_chart import work_chart
 
+#: About as wide as a picture is on the page.
+PAGE_PICTURE_PIXELS = 320
+
 #: Everything that ``write_report`` writes.
 REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "difference.png",
                 "display_list.npz")
@@ -64,13 +67,16 @@ def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
     )
     environment.filters["hexadecimal"] = _hexadecimal
     machine_depth, golden_depth = depth_pictures(rendering)
+    # A picture larger than its place loses pixels there: a lone red one must not be among them.
+    reach = max(rendering.simulation.video.shape) // PAGE_PICTURE_PIXELS
     return environment.get_template("report.html").render(
         facts,
         rows=[
             ("Colour", "from the video pins", data_uri(rendering.simulation.video),
-             data_uri(rendering.comparison.expected), data_uri(color_difference(rendering))),
+             data_uri(rendering.comparison.expected),
+             data_uri(color_difference(rendering, reach))),
             ("Depth", "read back, near is light", data_uri(machine_depth), data_uri(golden_depth),
-             data_uri(depth_difference(rendering))),
+             data_uri(depth_difference(rendering, reach))),
         ],
         chart=work_chart(rendering.simulation.work),
         groups=card_groups(rendering.configuration.cards),

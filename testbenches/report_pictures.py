@@ -33,18 +33,22 @@ def data_uri(pixels: Pixels) -> str:
     return f"data:image/png;base64,{base64.b64encode(png(pixels)).decode()}"
 
 
-def color_difference(rendering: Rendering) -> Pixels:
-    """Grey where the video is as expected, red where not, blue where nothing was compared."""
+def color_difference(rendering: Rendering, reach: int = 0) -> Pixels:
+    """Grey where the video is as expected, red where not, blue where nothing was compared.
+
+    Red spreads ``reach`` pixels to every side, to be seen where the picture is shown smaller.
+    """
     comparison = rendering.comparison
     luminance = comparison.expected.astype(np.float64) @ np.array([0.299, 0.587, 0.114])
-    return _marked(luminance / 255, comparison.color_different, comparison.color_orphans)
+    return _marked(luminance / 255, _spread(comparison.color_different, reach),
+                   comparison.color_orphans)
 
 
-def depth_difference(rendering: Rendering) -> Pixels:
+def depth_difference(rendering: Rendering, reach: int = 0) -> Pixels:
     """The same of the depths that were read back."""
     comparison = rendering.comparison
-    return _marked(_nearness(rendering, comparison.golden.depth), comparison.depth_different,
-                   comparison.depth_orphans)
+    return _marked(_nearness(rendering, comparison.golden.depth),
+                   _spread(comparison.depth_different, reach), comparison.depth_orphans)
 
 
 def depth_pictures(rendering: Rendering) -> tuple[Pixels, Pixels]:
@@ -71,6 +75,16 @@ def _nearness(rendering: Rendering, depth: NDArray[np.int64]) -> NDArray[np.floa
     near = int(drawn.min(initial=rendering.configuration.depth_background))
     far = int(drawn.max(initial=near)) if drawn.size else near
     return np.clip((far - depth) / max(far - near, 1), 0.0, 1.0)
+
+
+def _spread(marks: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
+    height, width = marks.shape
+    padded = np.pad(marks, reach)
+    spread = np.zeros_like(marks)
+    for down in range(2 * reach + 1):
+        for right in range(2 * reach + 1):
+            spread |= padded[down:down + height, right:right + width]
+    return spread
 
 
 def _marked(lightness: NDArray[np.float64], different: NDArray[np.bool_],

@@ -12,7 +12,7 @@ from PIL import Image
 
 from cardcage.golden.display_list import DisplayList
 from cardcage.testbenches.report import REPORT_FILES, card_groups
-from cardcage.testbenches.report_pictures import DIFFERENT_COLOR
+from cardcage.testbenches.report_pictures import DIFFERENT_COLOR, color_difference
 from cardcage.testbenches.simulation import Work
 from cardcage.testbenches.work_chart import work_chart
 
@@ -139,6 +139,14 @@ def test_difference_picture(wrong):
     difference = pixels(wrong / "difference.png")
     red = (difference == DIFFERENT_COLOR).all(axis=2)
     assert [tuple(place) for place in np.argwhere(red)] == [(5, 6)]
+
+
+def test_difference_spreads_for_the_page(draw, recording, tampering):
+    """In a picture shown smaller than it is, a lone red pixel would be lost."""
+    rendering = draw(tampering(recording, colors={(0, 0): (1, 2, 3), (9, 7): (4, 5, 6)}))
+    red = (color_difference(rendering, 1) == DIFFERENT_COLOR).all(axis=2)
+    assert red[:2, :2].all() and red[6:9, 8:11].all()
+    assert red.sum() == 4 + 9
 
 
 def test_text_from_outside_is_escaped(draw, tmp_path):
