@@ -113,7 +113,8 @@ def test_two_units_in_turn_take_a_visible_fragment_a_clock():
     fragments = [fragment(index % 2, index // 2, 5, index) for index in range(2 * WORDS)]
     source, memory, _ = run(fragments, units=2, background=255)
     assert source.taken == list(range(len(fragments)))
-    assert [write[0] for write in memory.writes] == [clock + DepthTest.latency for clock in source.taken]
+    assert [write[0] for write in memory.writes] == [clock + DepthTest.latency
+                                                     for clock in source.taken]
 
 
 def test_one_unit_takes_a_hidden_fragment_a_clock():
@@ -125,7 +126,7 @@ def test_one_unit_takes_a_hidden_fragment_a_clock():
 
 def test_one_unit_takes_two_accesses_for_a_visible_fragment():
     fragments = [fragment(0, index, 5, index) for index in range(WORDS)]
-    source, memory, _ = run(fragments, units=1, background=255)
+    _, memory, _ = run(fragments, units=1, background=255)
     assert len(memory.reads) == len(memory.writes) == WORDS
     # Its port is never idle in between, but for the time the last one takes.
     accesses = sorted(access[0] for access in memory.reads + memory.writes)

@@ -1,0 +1,129 @@
+"""The cage connects its cards, whatever they are, and nothing else."""
+
+import pytest
+from hdl_bench.bench import Watch, simulate
+from hdl_bench.pictures import exact_words, prepare, random_triangles, small_machine
+from hdl_bench.streams import Sink, Source, pauses
+
+from cardcage.golden import commands
+from cardcage.golden.cards import domains
+from cardcage.golden.commands import Opcode, ResponseKind
+from cardcage.golden.configuration import MachineConfiguration, preset
+from cardcage.golden.setup import scene_fraction_bits
+from cardcage.hdl.machine import Machine
+from cardcage.hdl.memory_unit import MemoryUnit
+from cardcage.hdl.processing_element import ProcessingElement
+
+#: Card orders with what is odd about them.
+ORDERS = {
+    "the least": "PM",
+    "PE last": "PMMP",
+    "adjacent PEs": "PPMPPM",
+    "only PEs in between": "PMPPPM",
+    "unequal shares": "PMPMMMPMMMM",
+    "two and two": "PMMPMM",
+    "orphans on the left": "MMPMPM",
+}
+
+
+def configuration_of(cards, **changes):
+    return small_machine(cards, allow_orphans=cards.startswith("M"), **changes)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_wires(order):
+    """Numbers and total along the chain; the lines of each element end at the next one."""
+    cards = ORDERS[order]
+    configuration = configuration_of(cards)
+    machine = Machine(configuration=configuration)
+    assert [isinstance(card, ProcessingElement) for card in machine.cards] == [
+        card == "P" for card in cards]
+    assert machine.memory_units == [card for card in machine.cards if isinstance(card, MemoryUnit)]
+    assert len(machine.processing_elements) == cards.count("P")
+    checked = []
+
+    def watch(ctx, clock):
+        number = owner = 0
+        nothing = {"write": 0, "read": 0}
+        lines = nothing
+        for card, letter in zip(machine.cards, cards, strict=True):
+            assert ctx.get(card.left.id) == number
+            assert ctx.get(card.total) == configuration.units
+            driven = {name: ctx.get(getattr(card.right.lines, name).as_value())
+                      for name in ("write", "read")}
+            if letter == "P":
+                owner += 1
+                lines = driven
+            else:
+                number += 1
+                # A memory unit passes on what it gets; left of all elements that is nothing.
+                assert driven == lines
+                assert {name: ctx.get(getattr(card.left.lines, name).as_value())
+                        for name in ("write", "read")} == lines
+                for name in ("fetch", "show"):
+                    generator = machine.scan_generator.scan
+                    assert ctx.get(getattr(card.scan, name).as_value()) == ctx.get(
+                        getattr(generator, name).as_value())
+                assert ctx.get(card.front) == ctx.get(machine.controller.front)
+        assert ctx.get(machine.controller.total) == number == configuration.units
+        ready, done = ([ctx.get(getattr(element.broadcast, name))
+                        for element in machine.processing_elements] for name in ("ready", "done"))
+        assert ctx.get(machine.controller.broadcast.ready) == all(ready)
+        assert ctx.get(machine.controller.broadcast.done) == all(done)
+        video = 0
+        for unit in machine.memory_units:
+            video |= ctx.get(unit.scan.video)
+        assert ctx.get(machine.scan_generator.scan.video) == video
+        for element in machine.processing_elements:
+            assert ctx.get(element.broadcast.strobe) == ctx.get(machine.controller.broadcast.strobe)
+        checked.append(lines != nothing)
+
+    simulate(machine, Watch(watch, 120), Sink(machine.responses))
+    assert any(checked)
+
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_a_frame_read_back(order):
+    """Boot, one frame and its depths, with a host that stalls: every order of the cards."""
+    cards = ORDERS[order]
+    scene = random_triangles(order, 10, width=8, height=8, flat=True)
+    configuration = configuration_of(cards, fraction_bits=scene_fraction_bits(scene))
+    interlace = configuration.interlace
+    machine = Machine(configuration=configuration)
+    shares = domains(cards)
+    words = [commands.frame_start(scene.background),
+             *commands.prepared_triangles(configuration, prepare(configuration, scene)),
+             commands.command(Opcode.FRAME_END), commands.command(Opcode.READ_DEPTH),
+             commands.command(Opcode.READ_COUNTERS)]
+    drawn, fragments = exact_words(scene, interlace, flat=True)
+    expected = [(ResponseKind.DOMAIN, first << 16 | count) for first, count in shares]
+    expected += [
+        (ResponseKind.UNITS, sum(count for _, count in shares) << 16 | configuration.units),
+        (ResponseKind.PICTURE, interlace.height << 16 | interlace.width),
+        (ResponseKind.BOOTED, None), (ResponseKind.FRAME_DRAWN, None),
+        (ResponseKind.FRAME_SHOWN, None)]
+    background = (1 << configuration.depth_bits) - 1
+    expected += [(ResponseKind.DEPTH, drawn.get(interlace.pixel(unit, address), (background,))[0])
+                 for first, count in shares for unit in range(first, first + count)
+                 for address in range(interlace.words)]
+    for first, count in shares:
+        own = sum(first <= interlace.unit(*pixel) < first + count for pixel in fragments)
+        expected += [(ResponseKind.FRAGMENTS, own), (ResponseKind.BUSY, None)]
+    sink = Sink(machine.responses, len(expected), pauses(f"{order} out"))
+    simulate(machine, Source(machine.commands, words, pauses(order)), sink, limit=8000)
+    for item, (kind, value) in zip(sink.items, expected, strict=True):
+        assert item.kind == kind
+        assert value is None or item.value == value, ResponseKind(item.kind)
+
+
+@pytest.mark.parametrize(("name", "cards", "units"),
+                         [("tiny", "PM", 1), ("small", "PMMPMM", 4), ("paper", "PMMMM" * 4, 16)])
+def test_presets_are_machines(name, cards, units):
+    configuration = preset(name)
+    assert isinstance(configuration, MachineConfiguration)
+    machine = Machine(configuration=configuration)
+    assert "".join("P" if isinstance(card, ProcessingElement) else "M"
+                   for card in machine.cards) == cards
+    assert len(machine.memory_units) == units
+    simulate(machine, Sink(machine.responses), after=1)
