@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, parse_cards
@@ -177,15 +177,19 @@ def configure(display_list: DisplayList, *, cards: str, fraction_bits: int | Non
               **rest: Any) -> MachineConfiguration:
     """The machine for one display list: its size, its formats, only the interpolants it needs.
 
-    ``fraction_bits`` None picks the width at which this list is drawn exactly.
+    ``fraction_bits`` None picks the width at which this list is drawn exactly, at the resolution
+    that the memory of the cards holds.
     """
-    if fraction_bits is None:
-        fraction_bits = scene_fraction_bits(display_list)
     rest.setdefault("shading", "flat" if display_list.flat else "gouraud")
-    return MachineConfiguration(
+    machine = MachineConfiguration(
         cards=cards, width=display_list.width, height=display_list.height,
         sub_bits=display_list.sub_bits, depth_bits=display_list.depth_bits,
-        fraction_bits=fraction_bits, **rest)
+        fraction_bits=0 if fraction_bits is None else fraction_bits, **rest)
+    if fraction_bits is not None:
+        return machine
+    interlace = machine.interlace
+    return replace(machine, fraction_bits=scene_fraction_bits(
+        display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift))
 
 
 #: Named machines: ``tiny`` at one glance, ``small`` for quick tests, ``paper`` for 512x512.

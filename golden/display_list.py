@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -132,11 +133,18 @@ class DisplayList:
     def load(cls, path: str | os.PathLike[str]) -> DisplayList:
         """Read what ``save`` wrote; ``InputError`` names the file and the field."""
         try:
-            with np.load(path, allow_pickle=False) as archive:
-                arrays: dict[str, Any] = dict(archive)
+            with Path(path).open("rb") as file:  # numpy leaves a broken one open
+                if not zipfile.is_zipfile(file):
+                    raise InputError(f"{path}: not a display list: no complete .npz archive; "
+                                     "write it again with save()")
+                file.seek(0)
+                with np.load(file, allow_pickle=False) as archive:
+                    arrays: dict[str, Any] = dict(archive)
         except FileNotFoundError:
             raise InputError(f"{path}: no such file") from None
-        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        except InputError:
+            raise
+        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error) as error:
             reason = str(error).splitlines()[0] if str(error) else type(error).__name__
             raise InputError(f"{path}: not a readable display list (.npz): {reason}") from None
         fields = ("version", "width", "height", "sub_bits", "depth_bits", "background",

@@ -122,11 +122,13 @@ class CentralBroadcastController(wiring.Component):
                 m.d.comb += packet.body.clear.front.eq(1)
                 announce(Operation.CLEAR, "INITIALISING")
             with m.State("INITIALISING"), m.If(quiet):
+                booted = Signal.like(cycles)
+                m.d.sync += booted.eq(cycles)
                 m.next = "REPORT_PICTURE"
             with m.State("REPORT_PICTURE"):
                 respond(ResponseKind.PICTURE, picture, "REPORT_BOOTED")
             with m.State("REPORT_BOOTED"):
-                respond(ResponseKind.BOOTED, cycles, "COMMAND")
+                respond(ResponseKind.BOOTED, booted, "COMMAND")
 
             with m.State("COMMAND"), m.If(self.commands.valid):
                 m.d.comb += self.commands.ready.eq(self.broadcast.ready)

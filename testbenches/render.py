@@ -13,7 +13,6 @@ from ..golden.errors import InputError
 from ..golden.exact import depth_complexity
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
 from ..golden.scenes.registry import DisplayListScene, parse_scene
-from ..golden.setup import scene_fraction_bits
 from .atomic_output import atomic_file, atomic_folder, output_errors
 from .compare import compare
 from .engine import Progress
@@ -187,15 +186,9 @@ def render(scene: str | Path = DEFAULT_SCENE, *, out: Path | None = None,
 
 
 def _configuration(listed: SceneDisplayList, fields: dict[str, Any]) -> MachineConfiguration:
-    display_list = listed.display_list
     bits = fields.pop("fraction_bits", "exact")
-    if bits != "exact":
-        return configure(display_list, fraction_bits=bits, **fields)
-    # What the scene needs depends on the resolution, which depends on the memory.
-    draft = configure(display_list, fraction_bits=0, **fields)
-    interlace = draft.interlace
-    return replace(draft, fraction_bits=scene_fraction_bits(
-        display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift))
+    return configure(listed.display_list, fraction_bits=None if bits == "exact" else bits,
+                     **fields)
 
 
 def _resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
