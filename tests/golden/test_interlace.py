@@ -1,0 +1,123 @@
+"""Pixel ↔ (unit, address): a bijection, laid out as the 1979 paper draws it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cardcage.golden.interlace import Interlace, interlace_for
+
+INTERLACES = st.builds(Interlace, st.integers(0, 6), st.integers(1, 40), st.integers(1, 40))
+
+
+@given(INTERLACES)
+def test_a_bijection(interlace):
+    y, x = np.mgrid[: interlace.height, : interlace.width]
+    unit, address = interlace.unit(x, y), interlace.address(x, y)
+    assert 0 <= unit.min() <= unit.max() < interlace.units
+    assert 0 <= address.min() <= address.max() < interlace.words
+    assert len(np.unique(unit * interlace.words + address)) == x.size
+    back_x, back_y = interlace.pixel(unit, address)
+    assert (back_x == x).all()
+    assert (back_y == y).all()
+
+
+@given(INTERLACES)
+def test_every_other_word_is_padding_off_the_picture(interlace):
+    unit, address = np.divmod(np.arange(interlace.units * interlace.words), interlace.words)
+    x, y = interlace.pixel(unit, address)
+    inside = (x < interlace.width) & (y < interlace.height)
+    assert inside.sum() == interlace.width * interlace.height
+    assert len(set(zip(x.tolist(), y.tolist(), strict=True))) == x.size
+
+
+@given(INTERLACES, st.integers(0, 50), st.integers(0, 50))
+def test_numbers_and_arrays_agree(interlace, x, y):
+    assert interlace.unit(x, y) == interlace.unit(np.array([x]), np.array([y]))[0]
+    assert interlace.address(x, y) == interlace.address(np.array([x]), np.array([y]))[0]
+
+
+def test_eight_units_are_two_apart_in_x_and_four_in_y():
+    """Figure 13's distances: the next pixel of the same unit."""
+    interlace = Interlace(3, 16, 16)
+    for y in range(8):
+        for x in range(8):
+            unit = interlace.unit(x, y)
+            assert [dx for dx in range(1, 9) if interlace.unit(x + dx, y) == unit] == [2, 4, 6, 8]
+            assert [dy for dy in range(1, 9) if interlace.unit(x, y + dy) == unit] == [4, 8]
+
+
+@pytest.mark.parametrize(("unit_bits", "numbers"), [
+    (0, [[0]]),
+    (1, [[0], [1]]),
+    (2, [[0, 2], [1, 3]]),
+    (3, [[0, 4], [2, 6], [1, 5], [3, 7]]),
+    (4, [[0, 8, 2, 10], [4, 12, 6, 14], [1, 9, 3, 11], [5, 13, 7, 15]]),
+])
+def test_the_tile_of_numbers(unit_bits, numbers):
+    """The most significant bit is the least of x, then that of y, and so on."""
+    interlace = Interlace(unit_bits, 8, 8)
+    rows, columns = len(numbers), len(numbers[0])
+    for y in range(8):
+        for x in range(8):
+            assert interlace.unit(x, y) == numbers[y % rows][x % columns]
+            assert interlace.address(x, y) == y // rows * (8 // columns) + x // columns
+
+
+@given(st.integers(0, 6), st.data())
+def test_aligned_blocks_are_lattices(unit_bits, data):
+    interlace = Interlace(unit_bits, 32, 32)
+    block_bits = data.draw(st.integers(0, unit_bits))
+    block = data.draw(st.integers(0, (1 << unit_bits - block_bits) - 1))
+    across, down = (1 << bits for bits in interlace.stride_bits(block_bits))
+    assert across * down << block_bits == interlace.units
+    y, x = np.mgrid[:32, :32]
+    inside = interlace.unit(x, y) >> block_bits == block
+    first_x, first_y = x[inside].min(), y[inside].min()
+    assert first_x < across
+    assert first_y < down
+    assert (inside == ((x % across == first_x) & (y % down == first_y))).all()
+
+
+@pytest.mark.parametrize(("units", "words", "size", "shifts"), [
+    (16, 16384, (512, 512), (0, 0)),
+    (8, 16384, (512, 256), (0, 1)),
+    (4, 16384, (256, 256), (1, 1)),
+    (2, 16384, (256, 128), (1, 2)),
+    (1, 16384, (128, 128), (2, 2)),
+])
+def test_fewer_units_give_a_coarser_picture(units, words, size, shifts):
+    """512x512 in sixteen units; boards pulled out, y halves first."""
+    interlace = interlace_for(512, 512, words=words, units=units)
+    assert (interlace.width, interlace.height) == size
+    assert (interlace.x_shift, interlace.y_shift) == shifts
+    assert interlace.words == words
+
+
+@given(st.integers(1, 70), st.integers(1, 70), st.integers(1, 300), st.integers(0, 4))
+def test_as_little_coarser_as_the_words_demand(width, height, words, unit_bits):
+    interlace = interlace_for(width, height, words=words, units=1 << unit_bits)
+    assert interlace.words <= words
+    assert interlace.units == 1 << unit_bits
+    shifts = interlace.x_shift, interlace.y_shift
+    assert shifts[1] - shifts[0] in (0, 1)
+    assert interlace.width == -(-width // 2 ** shifts[0])
+    assert interlace.height == -(-height // 2 ** shifts[1])
+    # The step before would not have fitted.
+    if shifts != (0, 0):
+        x_shift, y_shift = (shifts[0], shifts[1] - 1) if shifts[1] > shifts[0] else (
+            shifts[0] - 1, shifts[1])
+        finer = Interlace(unit_bits, -(-width // 2**x_shift), -(-height // 2**y_shift))
+        assert finer.words > words
+
+
+@pytest.mark.parametrize("units", [0, -1, 3, 6, 12])
+def test_units_must_be_a_power_of_two(units):
+    with pytest.raises(ValueError, match="power of two"):
+        interlace_for(8, 8, words=64, units=units)
+
+
+@pytest.mark.parametrize("words", [0, -5])
+def test_words_must_be_positive(words):
+    with pytest.raises(ValueError, match="words"):
+        interlace_for(8, 8, words=words, units=1)
