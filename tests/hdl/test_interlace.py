@@ -96,9 +96,14 @@ def test_scan_address(picture, units):
                 ctx.set(dut.x, scan_x)
                 x, y = scan_x >> interlace.x_shift, scan_y >> interlace.y_shift
                 selected = []
+                across = PITCH[units][0]
+                group = ({unit_of(units, x + step, y) for step in range(across)}
+                         if scan_x % (across << interlace.x_shift) == 0 else set())
                 for unit in range(units):
                     ctx.set(dut.id, unit)
-                    if ctx.get(dut.fetch):
+                    # The units of the group, at its first pixel, and no other.
+                    assert ctx.get(dut.fetch) == (unit in group)
+                    if unit in group:
                         fetched[unit] = ctx.get(dut.address)
                         reads[unit] += 1
                     if ctx.get(dut.selected):

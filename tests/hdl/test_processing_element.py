@@ -70,6 +70,8 @@ class Announcer(Agent):
                 self.settle = 4
 
     def sample(self, ctx):
+        if self.strobes and self.strobes[-1] == self.clock - 1:
+            assert not ctx.get(self.dut.broadcast.done), "done right after a strobe"
         waiting = self.packets and self.packets[0] is None and self.settle == 0
         if waiting and ctx.get(self.dut.broadcast.done):
             self.packets.pop(0)
@@ -164,6 +166,46 @@ def test_boot_two_frames_and_their_reports(machine, seed):
                     for unit in range(first, end) for address in words}
     assert {color for place, color in bench.memory.front.items() if place[1] in words} == {
         0x030201}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_operations_wait_for_those_before(seed):
+    """Nothing announced waits for done: each word read is as the operations before left it."""
+    pick = random.Random(f"order {seed}")
+    configuration = small_machine("PMM", 4, 4)
+    interlace = configuration.interlace
+    packets, expected = [SURVEY], [(ResponseKind.DOMAIN, 2)]
+    background = (1 << configuration.depth_bits) - 1
+    depth, fragments, cleared = None, 0, False
+    for _ in range(25):
+        kind = pick.choice(("clear", "draw", "draw", "read", "count")) if cleared else "clear"
+        if kind == "clear":
+            cleared, fragments = True, 0
+            depth = {(x, y): background for y in range(4) for x in range(4)}
+            packets.append(clear((7, 7, 7)))
+        elif kind == "draw":
+            left, top = pick.randrange(4), pick.randrange(4)
+            right, bottom = pick.randrange(left + 1, 5), pick.randrange(top + 1, 5)
+            values = rectangle(configuration, left, top, right, bottom)
+            value = pick.randrange(background)
+            values["planes"]["depth"]["start"] = value << configuration.fraction_bits
+            packets.append(draw(values))
+            for y in range(top, bottom):
+                for x in range(left, right):
+                    fragments += 1
+                    depth[x, y] = min(depth[x, y], value)
+        elif kind == "read":
+            packets.append(READ_DEPTH)
+            expected += [(ResponseKind.DEPTH, depth[interlace.pixel(unit, address)])
+                         for unit in range(2) for address in range(interlace.words)]
+        else:
+            packets.append(READ_COUNTERS)
+            expected += [(ResponseKind.FRAGMENTS, fragments), (ResponseKind.BUSY, None)]
+    bench = Bench(configuration, 0, 2, packets, responses=len(expected), seed=seed,
+                  scan=0.25 * seed)
+    for (kind, value), (wanted, number) in zip(bench.responses, expected, strict=True):
+        assert kind == wanted
+        assert number is None or value == number
 
 
 def test_an_empty_domain_reports_none_and_is_done():
