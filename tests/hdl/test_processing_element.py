@@ -298,3 +298,21 @@ def test_done_is_low_until_everything_is_written_and_sent(seed):
             if not following or write < following[0]:
                 assert write < done
     assert bench.sink.clocks[0] < bench.announcer.dones[0]
+
+
+@pytest.mark.parametrize(("cards", "end", "clocks"), [
+    ("PM", 1, 2),  # one port: a read and a write each
+    ("PMM", 2, 2),  # the units alternate from row to row only
+    ("PMMMM", 4, 1),  # two units in turn along a row
+    ("PMMMMMMMM", 8, 1),
+])
+def test_throughput_of_visible_fragments(cards, end, clocks):
+    """Every fragment visible, as in the worst case for writes: clocks for each."""
+    configuration = small_machine(cards, 16, 8)
+    packets = [SURVEY, None, clear((0, 0, 0)), None,
+               draw(rectangle(configuration, 0, 0, 16, 8)), None]
+    bench = Bench(configuration, 0, end, packets, responses=1)
+    reads = [read[0] for read in bench.memory.reads if read[0] > bench.announcer.dones[1]]
+    assert len(reads) == 16 * 8
+    # A few clocks where a row ends in the unit in which the next one begins.
+    assert clocks * 128 - 8 <= reads[-1] - reads[0] + 1 <= clocks * 128 + 8
