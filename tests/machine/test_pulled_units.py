@@ -1,13 +1,13 @@
 """Boards pulled out of the cage: it renumbers itself and keeps drawing."""
 
 import pytest
-from frames import check, random_list
+from frames import check, golden_picture, random_list
 
 from cardcage.golden.commands import ResponseKind
 from cardcage.golden.configuration import configure
 from cardcage.testbenches.engine import Job
 from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.simulation import expected_video, simulate
 
 LIST = random_list(11, 10, width=16, height=16)
 
@@ -41,15 +41,17 @@ def test_units_left_of_every_processing_element_belong_to_nobody():
     assert (simulation.owned, simulation.total) == (2, 4)
     assert [work.first_unit for work in simulation.work] == [2, 3]
     # Nobody's pixels are not drawn; everybody else's are, and right.
-    reference = simulate(cage("PMMPMPM".replace("PMM", "PMM", 1)), LIST, PysimEngine(),
-                         memory_seed=5)
+    picture = golden_picture(configuration, LIST)
     owned = simulation.depth >= 0
     assert owned.sum() * 2 == owned.size
-    assert (simulation.depth[owned] == reference.depth[owned]).all()
+    assert (simulation.depth[owned] == picture.depth[owned]).all()
+    video = expected_video(configuration, picture.color)
+    shown = owned.repeat(2, axis=0).repeat(2, axis=1)
+    assert (simulation.video[shown] == video[shown]).all()
 
 
 def test_a_number_of_units_that_is_no_power_of_two_is_refused_and_does_not_hang():
-    configuration = cage("PMMM", allow_orphans=True)
+    configuration = cage("PMMM", allow_orphans=True, fraction_bits=20)
     job = Job(configuration, commands=[1, 4], responses=1 + 1 + 3, maximum_cycles=2000)
     kinds = [kind for kind, _, _ in PysimEngine().run(job).responses]
     assert kinds == [ResponseKind.DOMAIN, ResponseKind.UNITS] + 3 * [ResponseKind.ERROR]
