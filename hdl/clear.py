@@ -27,6 +27,8 @@ class Clear(wiring.Component):
     done: Out(1)
         High for one clock, with the last write.
     memory: Out(ProcessingElementLines)
+
+    Fuchs & Johnson, step (c) after figure 12: each processing element initialises its buffers.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -37,6 +37,8 @@ class EdgeWalker(wiring.Component):
     double: In(1)
         Make the step twice as long, for later advances.
     column: Out(signed(edge_column_bits))
+
+    Fuchs & Johnson, figure 13: the constant change from pixel to pixel of one unit.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

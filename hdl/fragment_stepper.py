@@ -40,6 +40,8 @@ class FragmentStepper(wiring.Component):
     fragments: Out(stream of fragment_layout)
     busy: Out(1)
         Holds a span or a fragment.
+
+    Fuchs & Johnson, figure 13: rapid incremental computation of Z, and eventually of RGB.
     """
 
     latency = 2

@@ -23,6 +23,8 @@ class LineSelector(wiring.Component):
     lines: Out(ProcessingElementLines)
 
     Raises ``ValueError`` for fewer than two sources.
+
+    Inside the processing element of figure 12.
     """
 
     def __init__(self, *, configuration: MachineConfiguration, sources: int):

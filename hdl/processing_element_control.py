@@ -39,6 +39,8 @@ class ProcessingElementControl(wiring.Component):
         No operation here or in the datapath.
     working: Out(1)
         Drawing or clearing: what counts as a busy cycle.
+
+    Fuchs & Johnson, steps (a) to (d) after figure 12.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -28,6 +28,8 @@ class ReadBack(wiring.Component):
         High for one clock when the last word has been taken.
     depths: Out(stream of depth words)
     memory: Out(ProcessingElementLines)
+
+    Not in the paper; the lines are those of figure 12.
     """
 
     latency = 1

@@ -23,6 +23,9 @@ class ResponseLink(wiring.Component):
     left: Out(stream of response_layout)
     own_turn: In(1)
         This card still has, or may have, something to say.
+
+    The paper only has the processing elements signal that they are done; the chain runs from
+    slot to slot like the ID lines of figure 10.
     """
 
     latency = 1

@@ -43,6 +43,9 @@ class SpanStart(wiring.Component):
     started: Out(stream of started_span_layout)
     busy: Out(1)
         Holds a span.
+
+    Fuchs & Johnson, after figure 13: the controller computes the increments, the
+    processing elements only apply them.
     """
 
     latency = 2
