@@ -46,12 +46,12 @@ class ResponseKind(IntEnum):
     DOMAIN = 1  # at boot, per processing element: first unit << 16 | number of units
     UNITS = 2  # at boot: units in some domain << 16 | total units
     PICTURE = 3  # at boot: the machine's height << 16 | width
-    BOOTED = 4  # at boot: cycles since reset
+    BOOTED = 4  # at boot: cycles from reset until both pictures were clear
     FRAME_DRAWN = 5  # cycles from the frame start to the last processing element's done
     FRAME_SHOWN = 6  # scans that began with the old picture since the frame start
     DEPTH = 7  # one word of the depth buffer, units in order, addresses ascending
     FRAGMENTS = 8  # per processing element: fragments tested since the frame start
-    BUSY = 9  # per processing element: cycles not idle since the frame start
+    BUSY = 9  # per processing element: cycles it drew or cleared since the frame start
     ERROR = 10  # one of Fault
 
 
@@ -102,6 +102,17 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
     }
 
 
+def triangle_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``TRIANGLE``, reserved: three vertices as in the display list."""
+    vertex: Layout = {
+        "x": configuration.coordinate_bits,
+        "y": configuration.coordinate_bits,
+        "depth": configuration.depth_bits,
+        **dict.fromkeys(CHANNELS, CHANNEL_BITS),
+    }
+    return {f"vertex_{corner}": vertex for corner in range(3)}
+
+
 def frame_start_layout() -> Layout:
     """The body of ``FRAME_START``: the background colour."""
     return dict.fromkeys(CHANNELS, CHANNEL_BITS)
@@ -114,8 +125,9 @@ def layout_bits(layout: Layout) -> int:
 
 def command_words(configuration: MachineConfiguration) -> int:
     """32-bit words that one command takes in a file."""
-    bits = BODY_OFFSET + max(layout_bits(prepared_triangle_layout(configuration)),
-                             layout_bits(frame_start_layout()))
+    bits = BODY_OFFSET + max(layout_bits(layout) for layout in (
+        prepared_triangle_layout(configuration), triangle_layout(configuration),
+        frame_start_layout()))
     return -(-bits // WORD_BITS)
 
 

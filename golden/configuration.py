@@ -64,6 +64,8 @@ class MachineConfiguration:
         def fix(name: str, value: Any) -> None:
             object.__setattr__(self, name, value)
 
+        if not isinstance(self.cards, str):
+            raise InputError(f"cards: {self.cards!r} is no card order; write one such as 2x(PMM)")
         fix("cards", parse_cards(self.cards))
         for name, low, high in (
             ("width", 1, MAXIMUM_SIZE),
@@ -77,7 +79,8 @@ class MachineConfiguration:
             ("clocks_per_pixel", 2, 256),
         ):
             value = getattr(self, name)
-            if not isinstance(value, int) or not low <= value <= high:
+            whole = isinstance(value, int) and not isinstance(value, bool)
+            if not whole or not low <= value <= high:
                 raise InputError(f"{name}: {value!r} is not a whole number from {low} to {high}")
         if self.shading not in ("flat", "gouraud"):
             raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")

@@ -27,6 +27,7 @@ def floor_shift(value: Value, fraction_bits: int) -> Value:
 
 
 def saturate(value: Value, low: int, high: int) -> Value:
-    """``value`` held to ``[low, high]``, both ends included."""
+    """``value`` held to ``[low, high]``, both ends included; ``low`` is not negative, and the
+    result unsigned and just wide enough for ``high``."""
     width = len(Const(high))
     return Mux(value < low, Const(low, width), Mux(value > high, Const(high, width), value))[:width]

@@ -42,7 +42,9 @@ class ProcessingElement(wiring.Component):
     Latency: from a triangle's strobe to the read of its first fragment,
     ``latency`` clocks more than the lattice stride's bits.  Throughput: a
     fragment a clock while rows are long and ports are free; each row and each
-    triangle costs the span walker at least a clock.
+    triangle costs the span walker at least a clock.  A visible fragment takes
+    two accesses of its unit's one port, so two clocks where a row lies in one
+    unit (domains of one or two units), one where units alternate along it.
 
     Members
     -------
