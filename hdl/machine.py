@@ -8,7 +8,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden import commands
-from ..golden.cards import PROCESSING_ELEMENT
+from ..golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
 from ..golden.configuration import MachineConfiguration
 from .central_broadcast_controller import CentralBroadcastController
 from .layouts import response_layout
@@ -36,11 +36,10 @@ class Machine(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.controller = CentralBroadcastController(configuration=configuration)
-        self.scan_generator = VideoScanGenerator(configuration=configuration)
+        self.controller = self._build(CentralBroadcastController)
+        self.scan_generator = self._build(VideoScanGenerator)
         self.cards = [
-            ProcessingElement(configuration=configuration) if card == PROCESSING_ELEMENT
-            else MemoryUnit(configuration=configuration)
+            self._build(ProcessingElement if card == PROCESSING_ELEMENT else MemoryUnit)
             for card in configuration.cards
         ]
         super().__init__({
@@ -49,21 +48,30 @@ class Machine(wiring.Component):
             "pins": Out(VideoPins()),
         })
 
+    def _build(self, card):
+        """One card of a class; a machine of other boards with the same connectors overrides it."""
+        return card(configuration=self.configuration)
+
+    def _cards_of(self, letter):
+        return [card for card, place in zip(self.cards, self.configuration.cards, strict=True)
+                if place == letter]
+
     @property
     def processing_elements(self) -> list[ProcessingElement]:
-        return [card for card in self.cards if isinstance(card, ProcessingElement)]
+        return self._cards_of(PROCESSING_ELEMENT)
 
     @property
     def memory_units(self) -> list[MemoryUnit]:
-        return [card for card in self.cards if isinstance(card, MemoryUnit)]
+        return self._cards_of(MEMORY_UNIT)
 
     def elaborate(self, platform):
         m = Module()
         m.submodules.controller = controller = self.controller
         m.submodules.scan_generator = generator = self.scan_generator
-        for slot, card in enumerate(self.cards):
-            kind = "processing_element" if isinstance(card, ProcessingElement) else "memory_unit"
-            m.submodules[f"slot_{slot}_{kind}"] = card
+        names = {PROCESSING_ELEMENT: "processing_element", MEMORY_UNIT: "memory_unit"}
+        for slot, (card, letter) in enumerate(zip(self.cards, self.configuration.cards,
+                                                  strict=True)):
+            m.submodules[f"slot_{slot}_{names[letter]}"] = card
 
         wiring.connect(m, controller.commands, wiring.flipped(self.commands))
         pins = wires(m, "pin_wires")
