@@ -47,7 +47,8 @@ class _Rewriter:
         widths = {key: int(parameters[f"{key}_WIDTH"]) for key in "ABY"
                   if f"{key}_WIDTH" in parameters}
         if kind == "$pmux":
-            yield from self._chain(name, int(parameters["WIDTH"]), int(parameters["S_WIDTH"]), ports)
+            yield from self._chain(name, int(parameters["WIDTH"]), int(parameters["S_WIDTH"]),
+                                   ports)
             return
         if kind == "$logic_not" and widths["A"] > 1:
             kind = "$eq"
@@ -58,9 +59,7 @@ class _Rewriter:
             yield from self._fit("AB", max(widths["A"], widths["B"]), parameters, ports)
         elif kind in _ARITHMETIC:
             yield from self._fit("AB", widths["Y"], parameters, ports)
-        elif kind in _ONE_OPERAND:
-            yield from self._fit("A", widths["Y"], parameters, ports)
-        elif kind in _RIGHT_SHIFTS and widths["A"] < widths["Y"]:
+        elif kind in _ONE_OPERAND or (kind in _RIGHT_SHIFTS and widths["A"] < widths["Y"]):
             yield from self._fit("A", widths["Y"], parameters, ports)
         elif kind in _RIGHT_SHIFTS and widths["A"] > widths["Y"]:
             whole, wire = self._wire(widths["A"])
