@@ -12,13 +12,14 @@ from ..golden.configuration import MAXIMUM_WORDS, PRESETS
 from .command_group import EXIT_DIFFERENT, CommandGroup, warn
 from .command_options import FractionBits, Size
 from .engines import AUTO, ENGINES
+from .model_cache import cache_folder, cache_size, clear_cache
 from .progress import progress_bar
 from .render import DEFAULT_SCENE, RenderOptions, prepare_render
 from .render_summary import render_summary
 from .scenes_table import scenes_json, scenes_table, scenes_text
 
 #: Some minutes of simulation: say so before.
-PATIENCE_CYCLES = 300_000
+PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
 
 HELP_SETTINGS = {"max_content_width": 100, "help_option_names": ["-h", "--help"]}
 
@@ -90,7 +91,7 @@ def render(command_line: str, scene: str, waveform: Path | None, out: Path,
     for warning in job.warnings:
         warn(warning)
     expected = job.expected_cycles()
-    if expected > PATIENCE_CYCLES:
+    if expected > PATIENCE_CYCLES.get(job.options.engine, PATIENCE_CYCLES["verilator"]):
         warn(f"about {expected:,} cycles to simulate: this takes long; a smaller --size is quicker")
     with progress_bar(expected) as progress:
         rendering = job.run(out, waveform, progress)
@@ -99,6 +100,24 @@ def render(command_line: str, scene: str, waveform: Path | None, out: Path,
     click.echo(render_summary(rendering))
     if not rendering.comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
+
+
+@main.command()
+@click.option("--clear", is_flag=True, help="Remove every compiled model.")
+def cache(clear: bool) -> None:
+    """Show where compiled models are kept, or remove them.
+
+    A model is compiled once for each machine and kept; CARDCAGE_CACHE names another folder.
+
+    \b
+    Examples:
+      cardcage cache
+      cardcage cache --clear
+    """
+    if clear:
+        click.echo(f"{clear_cache() / 1e6:,.1f} MB removed from {cache_folder()}")
+    else:
+        click.echo(f"{cache_size() / 1e6:,.1f} MB in {cache_folder()}")
 
 
 @main.command()

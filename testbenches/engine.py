@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ..golden.commands import ResponseKind
 from ..golden.configuration import MachineConfiguration
 
-#: Called now and then with the cycles simulated and the responses received so far.
+#: Called now and then with the cycles simulated and the responses received so far; with 0 cycles
+#: when a model begins to be compiled.
 Progress = Callable[[int, int], None]
 
 
@@ -52,12 +53,20 @@ class Scan:
 
 @dataclass(frozen=True)
 class EngineRun:
-    """``responses`` in order with the cycle each came in, every whole scan, and the cost."""
+    """``responses`` in order with the cycle each came in, every whole scan, and the cost.
+
+    ``seconds`` is the simulation, files included; ``build_seconds`` what it took to compile a
+    model before, 0 where none had to be.  ``engine`` is who ran it, ``notes`` what the user should
+    know of it.
+    """
 
     responses: Sequence[tuple[ResponseKind, int, int]]
     scans: Sequence[Scan]
     cycles: int
     seconds: float
+    build_seconds: float = 0.0
+    engine: str = ""
+    notes: tuple[str, ...] = ()
 
 
 class Engine(Protocol):

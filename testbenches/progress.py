@@ -19,7 +19,7 @@ def progress_bar(expected_cycles: int) -> Iterator[ProgressFunction | None]:
         yield None
         return
     with Progress(
-        TextColumn("simulating"),
+        TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.completed:,.0f} cycles"),
         TimeElapsedColumn(),
@@ -33,6 +33,7 @@ def progress_bar(expected_cycles: int) -> Iterator[ProgressFunction | None]:
 
         def report(cycles: int, responses: int) -> None:
             # The expectation is a guess: never show a bar that is full and goes on.
-            bar.update(task, completed=cycles, total=max(expected_cycles, cycles * 21 // 20))
+            bar.update(task, completed=cycles, total=max(expected_cycles, cycles * 21 // 20),
+                       description="simulating" if cycles else "compiling the model, once")
 
         yield report

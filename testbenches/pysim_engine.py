@@ -50,7 +50,7 @@ class _Run:
         with recording:
             simulator.run()
         return EngineRun(self.responses, self.monitor.scans, self.cycle,
-                         time.perf_counter() - began)
+                         time.perf_counter() - began, engine=PysimEngine.name)
 
     def _scramble(self, ctx) -> None:
         """Every memory word random, as after power-on."""

@@ -19,6 +19,7 @@ from .engine import Progress
 from .engines import AUTO, make_engine
 from .rendering import Rendering
 from .simulation import MachineError, Simulation, simulate
+from .verilator_tool import ToolMissing
 
 #: Pretty, and some 20 seconds in the slowest engine.
 DEFAULT_SCENE = "teapot:tessellation=3"
@@ -104,6 +105,9 @@ class RenderJob:
         with ExitStack() as recordings:
             recording = None
             if waveform is not None:
+                if self.options.engine == "verilator":
+                    raise InputError("--waveform: the verilator engine records none; use --engine "
+                                     "pysim")
                 recording = recordings.enter_context(atomic_file(waveform, "--waveform"))
                 recordings.enter_context(output_errors(waveform, "--waveform"))
             try:
@@ -131,12 +135,15 @@ class RenderJob:
                             make_engine(self.options.engine),
                             memory_seed=self.options.random_memory, waveform=recording,
                             progress=progress)
+        except ToolMissing as missing:
+            raise InputError(f"--engine {self.options.engine}: {missing}; or use --engine "
+                             "pysim") from None
         except (TimeoutError, AssertionError) as error:
             raise MachineError(f"the machine failed: {error}") from error
 
     def _judged(self, simulation: Simulation) -> Rendering:
         comparison = compare(self.configuration, self.scene.display_list, simulation)
-        warnings = list(self.warnings)
+        warnings = [*self.warnings, *simulation.notes]
         if simulation.owned < simulation.total:
             warnings.append(f"{simulation.total - simulation.owned} of {simulation.total} memory "
                             "units belong to no processing element; their pixels are not compared")

@@ -18,7 +18,9 @@ def render_summary(rendering: Rendering) -> str:
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
         _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw; "
               f"{simulation.cycles:,} simulated by {simulation.engine} in "
-              f"{simulation.seconds:.1f} s"),
+              f"{simulation.seconds:.1f} s"
+              + (f", after {simulation.build_seconds:.0f} s of compiling the model"
+                 if simulation.build_seconds else "")),
         _line("efficiency", f"{100 * rendering.efficiency:.1f} % (fragments per cycle and "
               "processing element)"),
     ]

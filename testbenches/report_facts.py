@@ -47,6 +47,8 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         ],
         "engine": simulation.engine,
         "simulated_cycles_per_second": rendering.cycles_per_second,
+        "build_seconds": simulation.build_seconds,
+        "run_seconds": simulation.seconds,
         "wall_seconds": rendering.wall_seconds,
         "warnings": list(rendering.warnings),
         "first_difference": _first_difference(comparison.first_difference),

@@ -61,6 +61,8 @@ class Simulation:
     engine: str
     cycles: int
     seconds: float
+    build_seconds: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList) -> list[int]:
@@ -90,7 +92,7 @@ def simulate(
     """Boot the machine, draw one frame, watch it on the video pins, read its depths back."""
     job = frame_job(configuration, display_list, memory_seed=memory_seed, stall_seed=stall_seed,
                     waveform=waveform)
-    return _interpret(configuration, engine.name, engine.run(job, progress))
+    return _interpret(configuration, engine.run(job, progress))
 
 
 def frame_job(
@@ -131,7 +133,7 @@ def _bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
             + 4 * configuration.cycles_per_scan)
 
 
-def _interpret(configuration: MachineConfiguration, engine: str, run: EngineRun) -> Simulation:
+def _interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulation:
     values: dict[ResponseKind, list[int]] = {kind: [] for kind in ResponseKind}
     for kind, value, _ in run.responses:
         values[kind].append(value)
@@ -157,9 +159,11 @@ def _interpret(configuration: MachineConfiguration, engine: str, run: EngineRun)
         draw_cycles=values[ResponseKind.FRAME_DRAWN][0],
         repeated_scans=values[ResponseKind.FRAME_SHOWN][0],
         scans=run.scans,
-        engine=engine,
+        engine=run.engine,
         cycles=run.cycles,
         seconds=run.seconds,
+        build_seconds=run.build_seconds,
+        notes=run.notes,
     )
 
 

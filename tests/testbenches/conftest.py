@@ -17,6 +17,12 @@ OPTIONS = {"cards": "PM", "size": (16, 16)}
 ARGUMENTS = [SCENE, "--cards", "PM", "--size", "16x16"]
 
 
+@pytest.fixture(autouse=True)
+def only_pysim(monkeypatch):
+    """No model is compiled where a test does not ask for it."""
+    monkeypatch.setattr("cardcage.testbenches.engines.ENGINES", {"pysim": PysimEngine})
+
+
 class RecordingEngine:
     """Simulates each machine and frame once and hands out the recording from then on."""
 

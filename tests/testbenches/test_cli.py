@@ -23,7 +23,8 @@ SCENE = "random:n=12,size=8,seed=5"
 TINY = ["--cards", "PM", "--size", "16x16"]
 COMMAND = [sys.executable, "-c", "from cardcage.testbenches.cli import main; main()"]
 #: Long enough to be interrupted on any machine.
-LONG = ["render", "random:n=3000,size=60", "--size", "256x256", "--cards", "PM"]
+LONG = ["render", "random:n=3000,size=60", "--size", "256x256", "--cards", "PM",
+        "--engine", "pysim"]
 
 
 @pytest.fixture

@@ -1,0 +1,220 @@
+// Host and screen of a Cardcage machine, compiled with its Verilated model.
+//
+// usage: machine COMMANDS RESULTS expected-responses memory-seed stall-seed maximum-cycles
+//
+// COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.
+// RESULTS gets records: 'R' kind value cycle, 'S' cycle and a picture, 'E' cycles and why.
+// Progress goes to the standard output: cycles and responses, now and then.
+//
+// With the single argument "bare" and a number of cycles it only toggles the clock.
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "Vmachine.h"
+#include "verilated.h"
+
+#include "machine_constants.h"  // COMMAND_WORDS, WIDTH, HEIGHT, VERTICAL_SYNC_POSITIVE
+
+// Verilator writes the second underscore of a port's name as its code.
+#define PORT(interface, member) interface##___05F##member
+
+namespace {
+
+constexpr uint8_t FRAME_SHOWN = 6;
+constexpr uint64_t PROGRESS_CYCLES = 1 << 16;
+
+// One handshake signal of the host: high, or low for a random while before.
+class Pace {
+  public:
+    Pace(int64_t seed, uint64_t salt) : random_(seed >= 0), state_(seed * 2 + salt + 1) {}
+    bool high() const { return on_ && pause_ == 0; }
+    void go() {
+        on_ = true;
+        if (!random_) return;
+        const uint64_t pick = next() % 6;
+        pause_ = pick < 3 ? 0 : pick < 5 ? pick - 2 : next() % 20;
+    }
+    void wait() { if (pause_) --pause_; }
+    void stop() { on_ = false; }
+
+  private:
+    uint64_t next() {  // splitmix64
+        uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+        return z ^ (z >> 31);
+    }
+    bool random_;
+    bool on_ = false;
+    uint64_t state_;
+    uint64_t pause_ = 0;
+};
+
+// Puts pictures together from the video pins, as a screen would.
+class Monitor {
+  public:
+    explicit Monitor(FILE* results) : results_(results) { pixels_.reserve(3 * WIDTH * HEIGHT); }
+
+    // False, with a reason, when the video is malformed.
+    bool sample(uint64_t cycle, bool active, bool vertical_sync, uint8_t red, uint8_t green,
+                uint8_t blue) {
+        const bool in_sync = vertical_sync == VERTICAL_SYNC_POSITIVE;
+        if (in_sync && !in_sync_ && !finish()) return false;
+        in_sync_ = in_sync;
+        if (active) {
+            if (pixels_.empty()) first_cycle_ = cycle;
+            pixels_.push_back(red);
+            pixels_.push_back(green);
+            pixels_.push_back(blue);
+            ++line_pixels_;
+            return true;
+        }
+        if (line_pixels_ && line_pixels_ != WIDTH) return fail("a line of the wrong length");
+        line_pixels_ = 0;
+        if (red | green | blue) return fail("colour during blanking");
+        return true;
+    }
+    bool shown_since(uint64_t cycle) const { return scans_ && last_scan_cycle_ > cycle; }
+    const char* failure() const { return failure_; }
+
+  private:
+    bool fail(const char* why) { failure_ = why; return false; }
+    bool finish() {
+        if (synchronised_) {
+            if (pixels_.size() != 3ull * WIDTH * HEIGHT) return fail("a scan of the wrong size");
+            std::fputc('S', results_);
+            std::fwrite(&first_cycle_, sizeof first_cycle_, 1, results_);
+            std::fwrite(pixels_.data(), 1, pixels_.size(), results_);
+            last_scan_cycle_ = first_cycle_;
+            ++scans_;
+        }
+        synchronised_ = true;
+        pixels_.clear();
+        return true;
+    }
+    FILE* results_;
+    std::vector<uint8_t> pixels_;
+    uint64_t line_pixels_ = 0, first_cycle_ = 0, last_scan_cycle_ = 0, scans_ = 0;
+    bool synchronised_ = false, in_sync_ = false;
+    const char* failure_ = "";
+};
+
+std::vector<uint32_t> read_words(const char* path) {
+    FILE* file = std::fopen(path, "rb");
+    if (!file) { std::perror(path); std::exit(2); }
+    std::vector<uint32_t> words;
+    uint32_t buffer[4096];
+    size_t count;
+    while ((count = std::fread(buffer, 4, 4096, file))) words.insert(words.end(), buffer, buffer + count);
+    std::fclose(file);
+    return words;
+}
+
+int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
+    const auto began = std::chrono::steady_clock::now();
+    for (uint64_t cycle = 0; cycle < cycles; ++cycle) {
+        machine.clk = 0;
+        machine.eval();
+        machine.clk = 1;
+        machine.eval();
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+    std::printf("%f\n", seconds.count());
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    VerilatedContext context;
+    const bool is_bare = argc == 3 && !std::strcmp(argv[1], "bare");
+    if (!is_bare && argc != 7) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
+    const int64_t memory_seed = is_bare ? -1 : std::atoll(argv[4]);
+    if (memory_seed >= 0) {
+        context.randReset(2);
+        context.randSeed(static_cast<int>(memory_seed % 0x7fffffff) + 1);
+    }
+    const auto owner = std::make_unique<Vmachine>(&context);
+    Vmachine& machine = *owner;
+    machine.rst = 0;
+    if (is_bare) return bare(context, machine, std::strtoull(argv[2], nullptr, 10));
+
+    const std::vector<uint32_t> words = read_words(argv[1]);
+    const uint64_t commands = words.size() / COMMAND_WORDS;
+    FILE* results = std::fopen(argv[2], "wb");
+    if (!results) { std::perror(argv[2]); return 2; }
+    const uint64_t expected = std::strtoull(argv[3], nullptr, 10);
+    const int64_t stall_seed = std::atoll(argv[5]);
+    const uint64_t maximum = std::strtoull(argv[6], nullptr, 10);
+
+    Pace send(stall_seed, 0), receive(stall_seed, 1);
+    Monitor monitor(results);
+    uint64_t sent = 0, received = 0, cycle = 0, shown_cycle = 0;
+    bool shown = false;
+    char why = 'M';  // the maximum was reached
+    const char* reason = "";
+
+    const auto next_command = [&] {
+        if (sent == commands) { send.stop(); return; }
+        std::memcpy(&machine.PORT(commands, payload), &words[sent * COMMAND_WORDS], 4 * COMMAND_WORDS);
+        send.go();
+    };
+    next_command();
+    receive.go();
+    while (maximum == 0 || cycle <= maximum) {
+        machine.clk = 0;
+        machine.PORT(commands, valid) = send.high();
+        machine.PORT(responses, ready) = receive.high();
+        machine.eval();
+        // What the clock edge will take, and what it shows now.
+        const bool taken = send.high() && machine.PORT(commands, ready);
+        const bool given = receive.high() && machine.PORT(responses, valid);
+        const uint64_t response = machine.PORT(responses, payload);
+        ++cycle;
+        bool finished = false;
+        if (machine.PORT(pins, pixel)) {
+            if (!monitor.sample(cycle, machine.PORT(pins, active), machine.PORT(pins, vertical_sync),
+                                machine.PORT(pins, red), machine.PORT(pins, green), machine.PORT(pins, blue))) {
+                why = 'V';
+                reason = monitor.failure();
+                break;
+            }
+            finished = sent + taken == commands && received + given >= expected
+                       && (!shown || monitor.shown_since(shown_cycle));
+        }
+        machine.clk = 1;
+        machine.eval();
+        if (taken) { ++sent; next_command(); } else send.wait();
+        if (given) {
+            const uint8_t kind = response & 0xff;
+            const uint32_t value = static_cast<uint32_t>(response >> 8);
+            std::fputc('R', results);
+            std::fputc(kind, results);
+            std::fwrite(&value, sizeof value, 1, results);
+            std::fwrite(&cycle, sizeof cycle, 1, results);
+            ++received;
+            if (kind == FRAME_SHOWN) { shown = true; shown_cycle = cycle; }
+            receive.go();
+        } else receive.wait();
+        if (cycle % PROGRESS_CYCLES == 0) {
+            std::printf("%llu %llu\n", static_cast<unsigned long long>(cycle),
+                        static_cast<unsigned long long>(received));
+            std::fflush(stdout);
+        }
+        if (finished) { why = 'D'; break; }
+    }
+    std::fputc('E', results);
+    std::fputc(why, results);
+    std::fwrite(&cycle, sizeof cycle, 1, results);
+    std::fwrite(&sent, sizeof sent, 1, results);
+    std::fputs(reason, results);
+    std::fclose(results);
+    machine.final();
+    return 0;
+}

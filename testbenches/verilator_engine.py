@@ -1,0 +1,143 @@
+"""The exported Verilog as a compiled model: whole frames, no Python between two clocks."""
+
+from __future__ import annotations
+
+import shutil
+import struct
+import subprocess
+import tempfile
+import time
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+
+from ..golden.commands import ResponseKind, command_words
+from ..golden.configuration import MachineConfiguration
+from ..hdl.verilog import machine_verilog
+from .engine import EngineRun, Job, Progress, Scan
+from .model_cache import cached, content_hash
+from .verilator_tool import VerilatorTool, find_verilator
+
+#: The model is optimised; what runs once or seldom need not be.
+FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3",
+         "--x-assign", "fast", "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
+         "--output-split", "20000", "-CFLAGS", "-std=c++17 -O2"]
+
+
+class VerilatorEngine:
+    """Builds a model once per configuration, keeps it, and hands it whole files.
+
+    Raises ``ToolMissing`` where Verilator or a compiler is missing or fails, ``TimeoutError``
+    where the machine hangs, ``AssertionError`` where its video is malformed.
+    """
+
+    name = "verilator"
+
+    def __init__(self, tool: VerilatorTool | None = None) -> None:
+        self.tool = tool or find_verilator()
+
+    def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
+        if job.waveform is not None:
+            raise ValueError("the verilator engine writes no waveforms: use pysim")
+        began = time.perf_counter()
+        program, fresh = self.build(job.configuration, progress)
+        built = time.perf_counter()
+        with tempfile.TemporaryDirectory(prefix="cardcage-") as folder:
+            commands, results = Path(folder, "commands"), Path(folder, "results")
+            commands.write_bytes(_command_file(job))
+            arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
+                         _seed(job.stall_seed), job.maximum_cycles or 0]
+            _watch([str(argument) for argument in arguments], progress)
+            responses, scans, cycles = _read(job, results.read_bytes())
+        return EngineRun(responses, scans, cycles, time.perf_counter() - built,
+                         built - began if fresh else 0.0, engine=self.name)
+
+    def build(self, configuration: MachineConfiguration,
+              progress: Progress | None = None) -> tuple[Path, bool]:
+        """The program for a configuration, and whether it had to be built."""
+        verilog = machine_verilog(configuration)
+        main = (resources.files(__package__) / "templates" / "verilator_main.cpp").read_text()
+        constants = _constants(configuration)
+        key = content_hash([verilog, main, constants, *FLAGS, self.tool.version(),
+                            self.tool.compiler])
+
+        def build(folder: Path) -> None:
+            if progress is not None:
+                progress(0, 0)
+            for name, text in (("machine.v", verilog), ("main.cpp", main),
+                               ("machine_constants.h", constants)):
+                (folder / name).write_text(text)
+            self.tool.run([*FLAGS, *self.tool.make_flags, "-CFLAGS", f"-I{folder}",
+                           "--Mdir", "model", "-o", "../machine", "machine.v", "main.cpp"], folder)
+            shutil.rmtree(folder / "model")  # objects and headers: a hundred times the program
+
+        folder, fresh = cached(key, build)
+        return folder / "machine", fresh
+
+
+def _constants(configuration: MachineConfiguration) -> str:
+    values = {
+        "COMMAND_WORDS": command_words(configuration),
+        "WIDTH": configuration.width,
+        "HEIGHT": configuration.height,
+        "VERTICAL_SYNC_POSITIVE": int(configuration.timing.vertical_sync_positive),
+    }
+    return "".join(f"constexpr unsigned {name} = {value};\n" for name, value in values.items())
+
+
+def _seed(seed: int | None) -> int:
+    return -1 if seed is None else seed & 0x7FFF_FFFF
+
+
+def _command_file(job: Job) -> bytes:
+    size = 4 * command_words(job.configuration)
+    return b"".join(int(word).to_bytes(size, "little") for word in job.commands)
+
+
+def _watch(arguments: list[str], progress: Progress | None) -> None:
+    """Run the program; every line it prints is progress."""
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as process:
+        try:
+            assert process.stdout is not None and process.stderr is not None
+            for line in process.stdout:
+                if progress is not None:
+                    cycles, responses = line.split()
+                    progress(int(cycles), int(responses))
+            failure = process.stderr.read().strip()
+        except BaseException:
+            process.kill()
+            raise
+    if process.returncode:
+        raise RuntimeError(f"the compiled model failed with {process.returncode}: {failure}")
+
+
+def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]], list[Scan], int]:
+    """Responses, scans and cycles from the program's records."""
+    configuration = job.configuration
+    shape = (configuration.height, configuration.width, 3)
+    pixels = configuration.height * configuration.width * 3
+    responses: list[tuple[ResponseKind, int, int]] = []
+    scans: list[Scan] = []
+    place = 0
+    while True:
+        record = results[place:place + 1]
+        if record == b"R":
+            kind, value, cycle = struct.unpack_from("<BIQ", results, place + 1)
+            responses.append((ResponseKind(kind), value, cycle))
+            place += 14
+        elif record == b"S":
+            [cycle] = struct.unpack_from("<Q", results, place + 1)
+            picture = np.frombuffer(results, np.uint8, pixels, place + 9).reshape(shape)
+            scans.append(Scan(cycle, picture))
+            place += 9 + pixels
+        else:
+            break
+    why, cycles, sent = struct.unpack_from("<cQQ", results, place + 1)
+    if why == b"V":
+        raise AssertionError(f"cycle {cycles}: {results[place + 18:].decode()}")
+    if why != b"D":
+        raise TimeoutError(f"no end after {cycles} cycles: {sent} of {len(job.commands)} commands "
+                           f"taken, {len(responses)} of {job.responses} responses")
+    return responses, scans, cycles

