@@ -1,0 +1,107 @@
+"""``python -m cardcage.testbenches.cocotb_bench machine.v display_list.npz``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ...golden.configuration import MachineConfiguration
+from ...golden.display_list import DisplayList
+from ...golden.errors import InputError
+from ..command_group import EXIT_DIFFERENT, EXIT_WRONG_INPUT
+from ..compare import Comparison, compare
+from ..simulation import MachineError, Simulation, simulate
+from ..verilator_tool import ToolMissing
+from .engine import CocotbEngine
+from .exchange import read_configuration
+from .simulators import SIMULATORS
+
+
+class _Failure(click.ClickException):
+    """One line on the error output, and an exit status."""
+
+    def __init__(self, message: object, status: int) -> None:
+        super().__init__(str(message))
+        self.exit_code = status
+
+
+@click.command(context_settings={"max_content_width": 100, "help_option_names": ["-h", "--help"]})
+@click.argument("verilog", type=click.Path(path_type=Path), metavar="MACHINE.v")
+@click.argument("display_list", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz")
+@click.option("--simulator", type=click.Choice(list(SIMULATORS)), default="verilator",
+              show_default=True, help="Who simulates the Verilog.")
+@click.option("--configuration", type=click.Path(path_type=Path), metavar="MACHINE.json",
+              help="What the Verilog was built for.  [default: beside MACHINE.v, same name]")
+@click.option("--stall-seed", type=click.IntRange(min=0), default=1, show_default=True,
+              metavar="SEED", help="Of the host's pauses on both streams.")
+@click.option("--no-stalls", is_flag=True, help="The host never pauses.")
+@click.option("--memory-seed", type=click.IntRange(min=0), default=1, show_default=True,
+              metavar="SEED", help="Of the memories' contents at power-on in Verilator; Icarus "
+              "has them unknown (X).")
+@click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE",
+              help="Record every signal: .vcd from Verilator, .fst from Icarus.")
+def main(verilog: Path, display_list: Path, simulator: str, configuration: Path | None,
+         stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
+    """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.
+
+    \b
+    Examples:
+      python -m cardcage.testbenches.cocotb_bench machine.v display_list.npz
+      python -m cardcage.testbenches.cocotb_bench machine.v display_list.npz --simulator icarus
+
+    \b
+    Exit status: 0 done and equal, 1 the picture differs from the golden model or a rule of the
+    documents is broken, 2 the input is wrong or the simulator is missing.
+    """
+    try:
+        machine = read_configuration(configuration or verilog.with_suffix(".json"))
+        listed = DisplayList.load(display_list)
+        _check_match(machine, listed)
+        try:
+            text = verilog.read_text(encoding="utf-8")
+        except OSError as error:
+            raise InputError(f"{verilog}: {error.strerror}") from None
+        simulation = simulate(machine, listed, CocotbEngine(simulator, verilog=text),
+                              memory_seed=memory_seed, waveform=waveform,
+                              stall_seed=None if no_stalls else stall_seed)
+    except (AssertionError, TimeoutError, MachineError) as error:
+        raise _Failure(f"{verilog}: {error}", EXIT_DIFFERENT) from None
+    except (InputError, ToolMissing, ValueError) as error:
+        raise _Failure(error, EXIT_WRONG_INPUT) from None
+    comparison = compare(machine, listed, simulation)
+    click.echo(_summary(simulation, comparison))
+    if not comparison.equal:
+        raise SystemExit(EXIT_DIFFERENT)
+
+
+def _check_match(machine: MachineConfiguration, listed: DisplayList) -> None:
+    """``InputError`` where the machine is built for other display lists."""
+    for field in ("width", "height", "sub_bits", "depth_bits"):
+        built, needed = getattr(machine, field), getattr(listed, field)
+        if built != needed:
+            raise InputError(f"display list: {field} {needed}, the machine is built for {built}: "
+                             "export a machine for this list")
+    if machine.shading == "flat" and not listed.flat:
+        raise InputError("display list: its triangles have more than one colour, the machine is "
+                         "built for flat ones: export a machine for this list")
+
+
+def _summary(simulation: Simulation, comparison: Comparison) -> str:
+    lines = [
+        f"equal: {comparison.pixels_compared:,} colours and {comparison.depths_compared:,} depths "
+        "compared, 0 different" if comparison.equal else
+        f"DIFFERENT: {comparison.pixels_different:,} of {comparison.pixels_compared:,} colours, "
+        f"{comparison.depths_different:,} of {comparison.depths_compared:,} depths",
+        f"  {simulation.engine}: {simulation.cycles:,} cycles, {len(simulation.scans)} whole scans "
+        f"in {simulation.seconds:.1f} s, after {simulation.build_seconds:.1f} s of building",
+    ]
+    if (first := comparison.first_difference) is not None:
+        lines.insert(1, f"  first wrong pixel {first.pixel}: expected colour "
+                     f"{first.expected.color} depth {first.expected.depth}, got colour "
+                     f"{first.got.color} depth {first.got.depth}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main(prog_name="python -m cardcage.testbenches.cocotb_bench")

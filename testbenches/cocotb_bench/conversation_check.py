@@ -1,0 +1,121 @@
+"""What the machine answers to which command, in which order (docs/command-words.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from ...golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
+from ...golden.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
+from ...golden.configuration import MachineConfiguration
+from .violation import ProtocolViolation
+
+
+class Expected(NamedTuple):
+    """A response, with its value where the documents fix it, and the number of the command it
+    answers; boot answers number -1."""
+
+    kind: ResponseKind
+    value: int | None
+    command: int
+
+
+class ConversationCheck:
+    """Call ``command`` and ``response`` when a word passes; of one clock, the command first.
+
+    Raises ``ProtocolViolation`` where a response is not the next one due, comes before its
+    command, or has a value that cannot be; and where a command is taken before the boot is
+    reported, or before ``FRAME_SHOWN`` of the frame before has been taken.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, commands: Sequence[int]) -> None:
+        self._configuration = configuration
+        self._domains = domains(configuration.cards)
+        self._expected = list(self._boot())
+        refused = self._expected[-1].kind == ResponseKind.ERROR
+        due = len(self._expected)
+        self._due_before = [due]
+        for number, word in enumerate(commands):
+            opcode = word & ((1 << OPCODE_BITS) - 1)
+            self._expected += ([Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, number)]
+                               if refused else self._answers(number, opcode))
+            if opcode == Opcode.FRAME_END:
+                due = len(self._expected)
+            self._due_before.append(due)
+        self._sent = self._received = 0
+
+    @property
+    def complete(self) -> bool:
+        """Everything has been sent and answered."""
+        return (self._sent == len(self._due_before) - 1
+                and self._received == len(self._expected))
+
+    def command(self, cycle: int) -> None:
+        if self._received < self._due_before[self._sent]:
+            owed = self._expected[self._received].kind.name
+            raise ProtocolViolation(f"cycle {cycle}: command {self._sent} is taken while {owed} "
+                                    "is still due")
+        self._sent += 1
+
+    def response(self, cycle: int, kind: int, value: int) -> None:
+        got = f"cycle {cycle}: response {self._received} is kind {kind}, value {value:#x}"
+        if self._received == len(self._expected):
+            raise ProtocolViolation(f"{got}, and none is due")
+        expected = self._expected[self._received]
+        if kind != expected.kind:
+            raise ProtocolViolation(f"{got}; {expected.kind.name} is due")
+        if expected.command >= self._sent:
+            raise ProtocolViolation(f"{got}, before its command {expected.command} was taken")
+        if expected.value is not None and value != expected.value:
+            raise ProtocolViolation(f"{got}; {expected.kind.name} must be {expected.value:#x}")
+        if value > self._limit(expected.kind, cycle):
+            raise ProtocolViolation(f"{got}; {expected.kind.name} cannot be that large")
+        self._received += 1
+
+    def _boot(self) -> Iterator[Expected]:
+        configuration = self._configuration
+        for first, count in self._domains:
+            yield Expected(ResponseKind.DOMAIN, first << 16 | count, -1)
+        owned = sum(count for _, count in self._domains)
+        yield Expected(ResponseKind.UNITS, owned << 16 | configuration.units, -1)
+        if configuration.units.bit_count() != 1:
+            yield Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, -1)
+            return
+        interlace = configuration.interlace
+        yield Expected(ResponseKind.PICTURE, interlace.height << 16 | interlace.width, -1)
+        yield Expected(ResponseKind.BOOTED, None, -1)
+
+    def _answers(self, number: int, opcode: int) -> list[Expected]:
+        if opcode in (Opcode.FRAME_START, Opcode.PREPARED_TRIANGLE):
+            return []
+        if opcode == Opcode.FRAME_END:
+            kinds = [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
+        elif opcode == Opcode.READ_DEPTH:
+            words = self._configuration.interlace.words
+            kinds = [ResponseKind.DEPTH] * (words * sum(count for _, count in self._domains))
+        elif opcode == Opcode.READ_COUNTERS:
+            kinds = [ResponseKind.FRAGMENTS, ResponseKind.BUSY] * len(self._domains)
+        else:
+            return [Expected(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, number)]
+        return [Expected(kind, None, number) for kind in kinds]
+
+    def _limit(self, kind: ResponseKind, cycle: int) -> int:
+        """The largest value: what a word holds, or the clocks and scans there have been."""
+        if kind == ResponseKind.DEPTH:
+            return (1 << self._configuration.depth_bits) - 1
+        if kind in (ResponseKind.BOOTED, ResponseKind.FRAME_DRAWN, ResponseKind.BUSY,
+                    ResponseKind.FRAGMENTS):
+            return cycle
+        if kind == ResponseKind.FRAME_SHOWN:
+            return cycle // self._configuration.cycles_per_scan + 1
+        return (1 << 32) - 1
+
+
+def domains(cards: str) -> list[tuple[int, int]]:
+    """Of each processing element, left to right: its first memory unit and how many it owns."""
+    found: list[tuple[int, int]] = []
+    for place, card in enumerate(cards):
+        if card == PROCESSING_ELEMENT:
+            behind = cards[place + 1:].partition(PROCESSING_ELEMENT)[0]
+            found.append((cards[:place].count(MEMORY_UNIT), len(behind)))
+    return found

@@ -1,0 +1,82 @@
+"""The simulators that the bench runs on: where they are, and how they are told to build."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ..verilator_tool import ToolMissing, find_verilator
+
+#: Variables that would make cocotb's runner believe it was called for something else.
+_FOREIGN_VARIABLES = ("PYTEST_CURRENT_TEST", "WAVES", "GUI", "COCOTB_TEST_FILTER",
+                      "COCOTB_TESTCASE", "COCOTB_RESULTS_FILE", "MAKEFLAGS")
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """One simulator, found.
+
+    ``environment``      for everything that runs it
+    ``build_arguments``  besides those of cocotb's runner
+    ``wave_suffix``      of the waveforms it writes
+    """
+
+    name: str
+    environment: dict[str, str]
+    build_arguments: Sequence[str]
+    wave_suffix: str
+
+    def plus_arguments(self, memory_seed: int | None) -> list[str]:
+        """What memories hold at power-on: Icarus has them unknown (X) in any case."""
+        if self.name != "verilator":
+            return []
+        if memory_seed is None:
+            return ["+verilator+rand+reset+0"]
+        # Verilator takes seed 0 as "choose one".
+        return ["+verilator+rand+reset+2", f"+verilator+seed+{memory_seed % 0x7FFFFFFE + 1}"]
+
+
+def _verilator() -> Simulator:
+    tool = find_verilator()
+    return Simulator(
+        name="verilator",
+        environment=tool.environment,
+        build_arguments=[
+            # cocotb's runner calls make by itself and does not hand these flags on: let
+            # Verilator do it before, and nothing is left to make.
+            "--build", "-j", "2", *tool.make_flags,
+            # Compiling takes longer than a small picture: no optimisation.
+            "-MAKEFLAGS", "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0", "-CFLAGS", "-std=c++20",
+            # The bench only looks at the ports; all signals public would double the model.
+            "--no-public-flat-rw", "--public-depth", "1",
+            "--x-initial", "unique", "--x-assign", "unique", "-Wno-fatal", "-Wno-lint",
+        ],
+        wave_suffix=".vcd",
+    )
+
+
+def _icarus() -> Simulator:
+    for program in ("iverilog", "vvp"):
+        if shutil.which(program) is None:
+            raise ToolMissing(f"no Icarus Verilog: {program} is not on PATH; install the package "
+                              "iverilog of your distribution")
+    return Simulator(name="icarus", environment=dict(os.environ), build_arguments=[],
+                     wave_suffix=".fst")
+
+
+#: Finds each simulator, or raises ``ToolMissing``.
+SIMULATORS: dict[str, Callable[[], Simulator]] = {"verilator": _verilator, "icarus": _icarus}
+
+
+def find_simulator(name: str) -> Simulator:
+    """A simulator of ``SIMULATORS`` by name; ``ToolMissing`` says what is not there and how to get
+    it."""
+    if importlib.util.find_spec("cocotb_tools") is None:
+        raise ToolMissing("no cocotb: pip install 'cardcage[cocotb]'")
+    found = SIMULATORS[name]()
+    for variable in _FOREIGN_VARIABLES:
+        found.environment.pop(variable, None)
+    return found
