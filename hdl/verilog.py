@@ -32,7 +32,7 @@ _TO_NETLIST = """
 proc
 opt_expr -mux_undef
 opt_merge
-wreduce
+wreduce t:$add t:$sub t:$mul
 opt_clean -purge
 clean_zerowidth
 write_rtlil
@@ -177,7 +177,7 @@ def _translated(components: dict[str, wiring.Component]) -> str:
     netlist = plain_netlist(_yosys(texts, _TO_NETLIST))
     text = _yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
     # Parts are named by their path: nothing that needs escaping but Verilog's own words.
-    text = re.sub(r"\\([A-Za-z_][\w$.]*[$.][\w$.]*) ", _plain_name, text)
+    text = re.sub(r"\\([\w$.]*[$.][\w$.]*) ", _plain_name, text)
     # Said apart from the declaration: a start value, not the value of a variable that is assigned.
     text = re.sub(r"^  reg (\[[^]]+\] )?(\S+ ?) = (.*);$",
                   r"  reg \1\2;\n  initial \2 = \3;", text, flags=re.MULTILINE)
@@ -200,4 +200,4 @@ def _yosys(modules: list[str], script: str) -> str:
 
 
 def _plain_name(found: re.Match[str]) -> str:
-    return found[1].replace(".", "__")
+    return re.sub(r"^(?=[$\d])", "_", found[1].replace(".", "__"))
