@@ -25,7 +25,7 @@ from .pace import Pace
 from .pin_check import PinCheck, Pins
 from .scan_check import check_scans
 from .stream_check import StreamCheck
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 RESET_CLOCKS = 3
 PROGRESS_CYCLES = 1024
@@ -112,7 +112,7 @@ class _Bench:
     def _check_widths(self) -> None:
         expected = commands.command_bits(self.job.configuration)
         if len(self.dut.commands__payload) != expected:
-            raise ProtocolViolation(
+            raise ProtocolError(
                 f"the Verilog has commands of {len(self.dut.commands__payload)} bits, this "
                 f"configuration of {expected}: they are of different machines")
 
@@ -138,7 +138,7 @@ class _Bench:
         dut = self.dut
         taken = _level(dut.commands__ready)
         if taken is None:
-            raise ProtocolViolation(f"cycle {self.cycle}: commands: ready is unknown")
+            raise ProtocolError(f"cycle {self.cycle}: commands: ready is unknown")
         valid = _level(dut.responses__valid)
         word = _level(dut.responses__payload) if valid else None
         given = self._stream.sample(self.cycle, valid, self._receive.high, word)
@@ -184,7 +184,7 @@ class _Bench:
         if pixel:
             if color is None:
                 if self._booted is not None and self.cycle >= self._clear_from:
-                    raise ProtocolViolation(f"cycle {self.cycle}: pins: a colour is unknown after "
+                    raise ProtocolError(f"cycle {self.cycle}: pins: a colour is unknown after "
                                             "the boot cleared the pictures")
                 color = 0
             self.monitor.sample(self.cycle, pins.active, pins.vertical_sync, color)

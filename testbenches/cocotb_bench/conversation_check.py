@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
 from ...golden.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
 from ...golden.configuration import MachineConfiguration
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 
 class Expected(NamedTuple):
@@ -23,7 +23,7 @@ class Expected(NamedTuple):
 class ConversationCheck:
     """Call ``command`` and ``response`` when a word passes; of one clock, the command first.
 
-    Raises ``ProtocolViolation`` where a response is not the next one due, comes before its
+    Raises ``ProtocolError`` where a response is not the next one due, comes before its
     command, or has a value that cannot be; and where a command is taken before the boot is
     reported, or before ``FRAME_SHOWN`` of the frame before has been taken.
     """
@@ -53,23 +53,23 @@ class ConversationCheck:
     def command(self, cycle: int) -> None:
         if self._received < self._due_before[self._sent]:
             owed = self._expected[self._received].kind.name
-            raise ProtocolViolation(f"cycle {cycle}: command {self._sent} is taken while {owed} "
+            raise ProtocolError(f"cycle {cycle}: command {self._sent} is taken while {owed} "
                                     "is still due")
         self._sent += 1
 
     def response(self, cycle: int, kind: int, value: int) -> None:
         got = f"cycle {cycle}: response {self._received} is kind {kind}, value {value:#x}"
         if self._received == len(self._expected):
-            raise ProtocolViolation(f"{got}, and none is due")
+            raise ProtocolError(f"{got}, and none is due")
         expected = self._expected[self._received]
         if kind != expected.kind:
-            raise ProtocolViolation(f"{got}; {expected.kind.name} is due")
+            raise ProtocolError(f"{got}; {expected.kind.name} is due")
         if expected.command >= self._sent:
-            raise ProtocolViolation(f"{got}, before its command {expected.command} was taken")
+            raise ProtocolError(f"{got}, before its command {expected.command} was taken")
         if expected.value is not None and value != expected.value:
-            raise ProtocolViolation(f"{got}; {expected.kind.name} must be {expected.value:#x}")
+            raise ProtocolError(f"{got}; {expected.kind.name} must be {expected.value:#x}")
         if value > self._limit(expected.kind, cycle):
-            raise ProtocolViolation(f"{got}; {expected.kind.name} cannot be that large")
+            raise ProtocolError(f"{got}; {expected.kind.name} cannot be that large")
         self._received += 1
 
     def _boot(self) -> Iterator[Expected]:

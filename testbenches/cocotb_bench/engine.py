@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from ..engine import EngineRun, Job, Progress
 from ..verilator_tool import ToolMissing
 from .exchange import FOLDER_VARIABLE, read_outcome, read_progress, write_job
 from .simulators import Simulator, find_simulator
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 #: Seconds between two looks at the progress.
 _POLL_SECONDS = 0.1
@@ -33,7 +34,7 @@ class CocotbEngine:
     Waveforms are those of the simulator: ``.fst`` from Icarus, ``.vcd`` from Verilator.
 
     Raises ``ToolMissing`` where cocotb or the simulator is missing or cannot build the Verilog,
-    ``ProtocolViolation`` where the machine breaks a documented rule, ``TimeoutError`` where it
+    ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where it
     hangs.
     """
 
@@ -41,7 +42,8 @@ class CocotbEngine:
         self.name = "cocotb"
         self._simulator = find_simulator(simulator)
         self._verilog = verilog
-        self._folder = tempfile.TemporaryDirectory(prefix="cardcage-cocotb-")
+        self._folder = tempfile.mkdtemp(prefix="cardcage-cocotb-")
+        weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
         self._built: dict[tuple[str, bool], Path] = {}
 
     def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
@@ -56,7 +58,7 @@ class CocotbEngine:
             self._built[verilog, waves] = self._build(verilog, waves)
         build_folder = self._built[verilog, waves]
         built = time.perf_counter()
-        with tempfile.TemporaryDirectory(dir=self._folder.name) as name:
+        with tempfile.TemporaryDirectory(dir=self._folder) as name:
             run = self._simulate(job, Path(name), build_folder, progress)
         return EngineRun(run.responses, run.scans, run.cycles, time.perf_counter() - built,
                          build_seconds=built - began if fresh else 0.0, engine=self._described)
@@ -66,7 +68,7 @@ class CocotbEngine:
         return f"{self.name} on {self._simulator.name}"
 
     def _build(self, verilog: str, waves: bool) -> Path:
-        folder = Path(tempfile.mkdtemp(dir=self._folder.name))
+        folder = Path(tempfile.mkdtemp(dir=self._folder))
         source = folder / "machine.v"
         source.write_text(verilog, encoding="utf-8")
         status, log = _child(self._simulator, folder, {
@@ -93,7 +95,7 @@ class CocotbEngine:
             raise RuntimeError(f"{self._simulator.name} ended with status {status} and no result: "
                                f"{_first_error(log)}")
         if outcome.end == "violation":
-            raise ProtocolViolation(outcome.message)
+            raise ProtocolError(outcome.message)
         if outcome.end == "timeout":
             raise TimeoutError(outcome.message)
         return EngineRun([(ResponseKind(kind), value, cycle)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...golden.configuration import MachineConfiguration
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 
 class Pins(NamedTuple):
@@ -20,7 +20,7 @@ class Pins(NamedTuple):
 class PinCheck:
     """Call ``sample`` once per clock.
 
-    Raises ``ProtocolViolation`` where ``pixel`` does not come every ``clocks_per_pixel`` clocks,
+    Raises ``ProtocolError`` where ``pixel`` does not come every ``clocks_per_pixel`` clocks,
     another pin moves between two pixels, a colour leaves black during blanking, or a sync or
     ``active`` is not where the timing has it.  Where the scan is, it learns from the first
     vertical sync that begins under its eyes.
@@ -35,17 +35,17 @@ class PinCheck:
 
     def sample(self, cycle: int, pixel: int | None, pins: Pins) -> None:
         if pixel is None:
-            raise ProtocolViolation(f"cycle {cycle}: pins: pixel is unknown")
+            raise ProtocolError(f"cycle {cycle}: pins: pixel is unknown")
         if not pixel:
             if self._held is not None and pins != self._held:
-                raise ProtocolViolation(f"cycle {cycle}: pins: {pins} between two pixels, after "
+                raise ProtocolError(f"cycle {cycle}: pins: {pins} between two pixels, after "
                                         f"{self._held}")
             if self._last_pixel is not None and cycle - self._last_pixel >= self._period:
-                raise ProtocolViolation(f"cycle {cycle}: pins: no pixel {self._period} clocks "
+                raise ProtocolError(f"cycle {cycle}: pins: no pixel {self._period} clocks "
                                         "after the last")
             return
         if self._last_pixel is not None and cycle - self._last_pixel != self._period:
-            raise ProtocolViolation(f"cycle {cycle}: pins: a pixel {cycle - self._last_pixel} "
+            raise ProtocolError(f"cycle {cycle}: pins: a pixel {cycle - self._last_pixel} "
                                     f"clocks after the last, not {self._period}")
         self._last_pixel = cycle
         self._check_pixel(cycle, pins)
@@ -53,9 +53,9 @@ class PinCheck:
 
     def _check_pixel(self, cycle: int, pins: Pins) -> None:
         if None in pins[:3]:
-            raise ProtocolViolation(f"cycle {cycle}: pins: active or a sync is unknown")
+            raise ProtocolError(f"cycle {cycle}: pins: active or a sync is unknown")
         if not pins.active and pins.color != 0:
-            raise ProtocolViolation(f"cycle {cycle}: pins: not black during blanking")
+            raise ProtocolError(f"cycle {cycle}: pins: not black during blanking")
         timing = self._timing
         if self._place is not None:
             self._place = (self._place + 1) % timing.pixels
@@ -74,7 +74,7 @@ class PinCheck:
              0 <= x < timing.horizontal_active and 0 <= y < timing.vertical_active),
         ):
             if got != expected:
-                raise ProtocolViolation(
+                raise ProtocolError(
                     f"cycle {cycle}: pins: {name} is {'on' if got else 'off'} in line {line}, "
                     f"column {column} of the scan, counted from the syncs")
 

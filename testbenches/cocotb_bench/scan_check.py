@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..engine import Scan
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 
 def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
                 shown: Sequence[int]) -> None:
-    """Raise ``ProtocolViolation`` where a scan shows what it must not.
+    """Raise ``ProtocolError`` where a scan shows what it must not.
 
     ``clear`` is the first cycle from which both pictures are black; ``ended`` when each
     ``FRAME_END`` was taken, ``shown`` when its ``FRAME_SHOWN`` was.  From ``shown`` until the next
@@ -30,7 +30,7 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
             picture = np.zeros_like(scans[0].picture)
         for scan in stable:
             if not np.array_equal(scan.picture, picture):
-                raise ProtocolViolation(_torn(scan, picture, f"picture {number}"))
+                raise ProtocolError(_torn(scan, picture, f"picture {number}"))
         pictures.append(picture)
     for number, (end, begin) in enumerate(zip(ended, shown, strict=False)):
         before, after = pictures[number], pictures[number + 1]
@@ -39,7 +39,7 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
         for scan in scans:
             if end <= scan.cycle < begin and not any(
                     np.array_equal(scan.picture, whole) for whole in (before, after)):
-                raise ProtocolViolation(_torn(scan, before, f"picture {number} or the next"))
+                raise ProtocolError(_torn(scan, before, f"picture {number} or the next"))
 
 
 def _torn(scan: Scan, expected: np.ndarray, name: str) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from .violation import ProtocolViolation
+from .violation import ProtocolError
 
 
 class StreamCheck:
     """Call ``sample`` with what each clock edge sees; None stands for an unknown level (X or Z).
 
-    Raises ``ProtocolViolation`` where the side that offers takes an offer back or changes it
+    Raises ``ProtocolError`` where the side that offers takes an offer back or changes it
     before it is taken, or where ``valid``, ``ready`` or an offered payload is unknown.
     """
 
@@ -34,4 +34,4 @@ class StreamCheck:
         return bool(ready)
 
     def _fail(self, cycle: int, what: str) -> None:
-        raise ProtocolViolation(f"cycle {cycle}: {self._name}: {what}")
+        raise ProtocolError(f"cycle {cycle}: {self._name}: {what}")

@@ -3,5 +3,5 @@
 from __future__ import annotations
 
 
-class ProtocolViolation(AssertionError):
+class ProtocolError(AssertionError):
     """The machine did what its documents rule out; the message has the cycle and what."""
