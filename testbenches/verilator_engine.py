@@ -15,7 +15,7 @@ import numpy as np
 
 from ..golden.commands import ResponseKind, command_words
 from ..golden.configuration import MachineConfiguration
-from ..hdl.verilog import machine_verilog
+from ..hdl.verilog import CARD_MODULES, machine_verilog
 from .engine import EngineRun, Job, Progress, Scan
 from .model_cache import cached, content_hash
 from .verilator_tool import VerilatorTool, find_verilator
@@ -24,6 +24,12 @@ from .verilator_tool import VerilatorTool, find_verilator
 FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3",
          "--x-assign", "fast", "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
          "--output-split", "20000", "-CFLAGS", "-std=c++17 -O2"]
+
+
+#: Each kind of card is compiled once however many slots hold one: half the time to build, and a
+#: program so much smaller that it runs twice as fast.
+ONCE = "`verilator_config\n" + "".join(
+    f'no_inline -module "{name}"\n' for name in CARD_MODULES.values())
 
 
 class VerilatorEngine:
@@ -63,7 +69,7 @@ class VerilatorEngine:
         """The program for a configuration, and whether it had to be built."""
         main = (resources.files(__package__) / "templates" / "verilator_main.cpp").read_text()
         constants = _constants(configuration)
-        key = content_hash([self.verilog or _origin(configuration), main, constants, *FLAGS,
+        key = content_hash([self.verilog or _origin(configuration), main, constants, ONCE, *FLAGS,
                             self.tool.version(), self.tool.compiler])
 
         def build(folder: Path) -> None:
@@ -71,10 +77,11 @@ class VerilatorEngine:
                 progress(0, 0)
             verilog = self.verilog or machine_verilog(configuration)
             for name, text in (("machine.v", verilog), ("main.cpp", main),
-                               ("machine_constants.h", constants)):
+                               ("machine_constants.h", constants), ("once.vlt", ONCE)):
                 (folder / name).write_text(text)
             self.tool.run([*FLAGS, *self.tool.make_flags, "-CFLAGS", f"-I{folder}",
-                           "--Mdir", "model", "-o", "../machine", "machine.v", "main.cpp"], folder)
+                           "--Mdir", "model", "-o", "../machine", "once.vlt", "machine.v", "main.cpp"],
+                          folder)
             shutil.rmtree(folder / "model")  # objects and headers: a hundred times the program
 
         folder, fresh = cached(key, build)
