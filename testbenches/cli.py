@@ -8,10 +8,11 @@ from typing import Any
 
 import click
 
-from ..golden.configuration import MAXIMUM_WORDS, PRESETS
 from .command_group import EXIT_DIFFERENT, CommandGroup, warn
-from .command_options import FractionBits, Size
+from .command_options import machine_options
 from .engines import AUTO, ENGINES
+from .export import COMPONENT_NAMES, export, export_summary
+from .machine_options import MachineOptions
 from .model_cache import cache_folder, cache_size, clear_cache
 from .progress import progress_bar
 from .render import DEFAULT_SCENE, RenderOptions, prepare_render
@@ -46,24 +47,9 @@ def main(context: click.Context) -> None:
 
 @main.command()
 @click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
-@click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
-              "processing element, M a memory unit.  [default: 2x(PMM)]")
-@click.option("--size", type=Size(), metavar="WxH", help="Highest resolution.  [default: 64x64]")
-@click.option("--preset", type=click.Choice(list(PRESETS)),
-              help="A named machine; other options override it.")
+@machine_options
 @click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
               help="The simulator.")
-@click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
-              help="Fraction bits of depth and colour; exact takes what the scene needs.  "
-              "[default: exact]")
-@click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
-              show_default=True, help="Colour interpolators in the machine, or not; auto has them "
-              "where the scene needs them.")
-@click.option("--words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
-              help="Words of each memory unit; too few make the picture coarser.  "
-              "[default: what the size needs]")
-@click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
-              help="Clocks a pixel lasts on the video output.  [default: 2]")
 @click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
               help="Start with random words in every memory, as after power-on.")
 @click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE.vcd",
@@ -118,6 +104,34 @@ def cache(clear: bool) -> None:
         click.echo(f"{clear_cache() / 1e6:,.1f} MB removed from {cache_folder()}")
     else:
         click.echo(f"{cache_size() / 1e6:,.1f} MB in {cache_folder()}")
+
+
+@main.command(name="export")
+@click.argument("scene", required=False, metavar="[SCENE]")
+@machine_options
+@click.option("--component", type=click.Choice(COMPONENT_NAMES), metavar="NAME",
+              help="One board or part alone, such as memory_unit; a wrong name lists them all.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=Path("machine.v"),
+              show_default=True, metavar="FILE.v", help="The Verilog; its description (.json) and "
+              "Verilator's waivers (.vlt) go beside it.")
+def export_command(scene: str | None, component: str | None, output: Path,
+                   **options: Any) -> None:
+    """Write the machine as Verilog, its ports and number formats as JSON.
+
+    With a SCENE the number formats are what it needs; without one they draw every triangle on the
+    screen exactly.
+
+    \b
+    Examples:
+      cardcage export
+      cardcage export mesh.obj --cards '4x(PMM)' --size 640x480 -o machine.v
+      cardcage export --preset paper --shading flat -o paper.v
+      cardcage export --component memory_unit -o memory_unit.v
+    """
+    exported = export(output, scene, MachineOptions(**options), component)
+    for warning in exported.warnings:
+        warn(warning)
+    click.echo(export_summary(exported))
 
 
 @main.command()

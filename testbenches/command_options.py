@@ -1,13 +1,14 @@
-"""What the values of command-line options mean: sizes and precisions."""
+"""The options that choose a machine, and what their values mean: sizes and precisions."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import click
 
-from ..golden.configuration import MAXIMUM_SIZE
+from ..golden.configuration import MAXIMUM_SIZE, MAXIMUM_WORDS, PRESETS
 from ..golden.fixed import MAX_FRACTION_BITS
 
 
@@ -42,3 +43,32 @@ class FractionBits(click.ParamType):
             self.fail(f"{value!r} is neither 'exact' nor a whole number from 0 to "
                       f"{MAX_FRACTION_BITS}", param, ctx)
         return int(value)
+
+
+#: One for each field of ``machine_options.MachineOptions``.
+_MACHINE_OPTIONS = (
+    click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
+                 "processing element, M a memory unit.  [default: 2x(PMM)]"),
+    click.option("--size", type=Size(), metavar="WxH",
+                 help="Highest resolution.  [default: 64x64]"),
+    click.option("--preset", type=click.Choice(list(PRESETS)),
+                 help="A named machine; other options override it."),
+    click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
+                 help="Fraction bits of depth and colour; exact takes what the scene needs.  "
+                 "[default: exact]"),
+    click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
+                 show_default=True, help="Colour interpolators in the machine, or not; auto has "
+                 "them where the scene needs them."),
+    click.option("--words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+                 help="Words of each memory unit; too few make the picture coarser.  "
+                 "[default: what the size needs]"),
+    click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
+                 help="Clocks a pixel lasts on the video output.  [default: 2]"),
+)
+
+
+def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that choose a machine."""
+    for option in reversed(_MACHINE_OPTIONS):
+        command = option(command)
+    return command

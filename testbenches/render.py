@@ -6,66 +6,35 @@ import time
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from ..golden.configuration import PRESETS, MachineConfiguration, configure
+from ..golden.configuration import MachineConfiguration
 from ..golden.errors import InputError
 from ..golden.exact import depth_complexity
-from ..golden.scene_display_list import SceneDisplayList, make_display_list
-from ..golden.scenes.registry import DisplayListScene, parse_scene
+from ..golden.scene_display_list import SceneDisplayList
 from .atomic_output import atomic_file, atomic_folder, output_errors
 from .compare import compare
 from .engine import Progress
 from .engines import AUTO, make_engine
+from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
 from .rendering import Rendering
 from .simulation import MachineError, Simulation, simulate
 from .verilator_tool import ToolMissing
 
 #: Pretty, and some 20 seconds in the slowest engine.
 DEFAULT_SCENE = "teapot:tessellation=3"
-DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
-
-ShadingChoice = Literal["auto", "flat", "gouraud"]
 
 
 @dataclass(frozen=True)
-class RenderOptions:
-    """What can be asked of a rendering; None leaves a choice to the preset or the scene.
+class RenderOptions(MachineOptions):
+    """What can be asked of a rendering: a machine, and how to simulate it.
 
-    ``preset``            a named machine of ``golden.configuration.PRESETS``; the rest overrides it
-    ``cards``             card order, such as ``4x(PMM)``
-    ``size``              width, height of the highest resolution
-    ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs
-    ``shading``           ``auto`` interpolates colours where the scene has more than one a triangle
-    ``words``             of each memory unit
-    ``clocks_per_pixel``  clocks a pixel lasts on the video output
     ``engine``            a name of ``engines.ENGINES`` or ``auto``
     ``random_memory``     seed of the memories' contents before boot; None: zero
     """
 
-    preset: str | None = None
-    cards: str | None = None
-    size: tuple[int, int] | None = None
-    fraction_bits: int | Literal["exact"] | None = None
-    shading: ShadingChoice = "auto"
-    words: int | None = None
-    clocks_per_pixel: int | None = None
     engine: str = AUTO
     random_memory: int | None = None
-
-    def machine(self) -> dict[str, Any]:
-        """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
-        if self.preset is not None and self.preset not in PRESETS:
-            raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
-        fields = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
-        for name in ("cards", "words", "clocks_per_pixel", "fraction_bits"):
-            if getattr(self, name) is not None:
-                fields[name] = getattr(self, name)
-        if self.shading != "auto":
-            fields["shading"] = self.shading
-        if self.size is not None:
-            fields["width"], fields["height"] = self.size
-        return fields
 
 
 @dataclass(frozen=True)
@@ -163,19 +132,13 @@ def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | N
     """Load the scene and choose the machine.  Raises ``InputError`` for whatever cannot be used."""
     began = time.perf_counter()
     options = options or RenderOptions()
-    fields = options.machine()
-    width, height = fields.pop("width", None), fields.pop("height", None)
-    if isinstance(parse_scene(scene), DisplayListScene) and options.size is None:
-        width = height = None  # a saved list has its own size, whatever the preset's
-    listed = make_display_list(scene, width=width, height=height,
-                               shading="flat" if options.shading == "flat" else "gouraud")
-    configuration = _configuration(listed, fields)
+    listed, configuration = machine_for_scene(scene, options)
     return RenderJob(
         scene=listed,
         configuration=configuration,
         options=options,
         command_line=command_line,
-        warnings=(*listed.notes, *_resolution_warnings(configuration)),
+        warnings=(*listed.notes, *resolution_warnings(configuration)),
         began=began,
     )
 
@@ -190,18 +153,3 @@ def render(scene: str | Path = DEFAULT_SCENE, *, out: Path | None = None,
     """
     job = prepare_render(scene, RenderOptions(**options))
     return job.run(out, waveform, progress)
-
-
-def _configuration(listed: SceneDisplayList, fields: dict[str, Any]) -> MachineConfiguration:
-    bits = fields.pop("fraction_bits", "exact")
-    return configure(listed.display_list, fraction_bits=None if bits == "exact" else bits,
-                     **fields)
-
-
-def _resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
-    interlace = configuration.interlace
-    if (interlace.width, interlace.height) == (configuration.width, configuration.height):
-        return ()
-    return (f"{configuration.words} words in each memory unit hold {interlace.width}x"
-            f"{interlace.height} pixels, not {configuration.width}x{configuration.height}: the "
-            "picture is coarser",)

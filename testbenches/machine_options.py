@@ -1,0 +1,99 @@
+"""From what was asked on the command line to a machine, with a scene or without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from ..golden.configuration import PRESETS, MachineConfiguration, configure
+from ..golden.errors import InputError
+from ..golden.fixed import MAX_FRACTION_BITS, exact_fraction_bits
+from ..golden.scene_display_list import SceneDisplayList, make_display_list
+from ..golden.scenes.registry import DisplayListScene, parse_scene
+
+#: Small enough for every engine; the size is the scenes' own default.
+DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
+DEFAULT_SIZE = {"width": 64, "height": 64}
+
+ShadingChoice = Literal["auto", "flat", "gouraud"]
+
+
+@dataclass(frozen=True)
+class MachineOptions:
+    """What can be asked of a machine; None leaves a choice to the preset or the scene.
+
+    ``preset``            a named machine of ``golden.configuration.PRESETS``; the rest overrides it
+    ``cards``             card order, such as ``4x(PMM)``
+    ``size``              width, height of the highest resolution
+    ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs
+    ``shading``           ``auto`` interpolates colours where the scene has more than one a triangle
+    ``words``             of each memory unit
+    ``clocks_per_pixel``  clocks a pixel lasts on the video output
+    """
+
+    preset: str | None = None
+    cards: str | None = None
+    size: tuple[int, int] | None = None
+    fraction_bits: int | Literal["exact"] | None = None
+    shading: ShadingChoice = "auto"
+    words: int | None = None
+    clocks_per_pixel: int | None = None
+
+    def machine(self) -> dict[str, Any]:
+        """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
+        if self.preset is not None and self.preset not in PRESETS:
+            raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
+        fields = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
+        for name in ("cards", "words", "clocks_per_pixel", "fraction_bits"):
+            if getattr(self, name) is not None:
+                fields[name] = getattr(self, name)
+        if self.shading != "auto":
+            fields["shading"] = self.shading
+        if self.size is not None:
+            fields["width"], fields["height"] = self.size
+        return fields
+
+
+def machine_for_scene(scene: str | Path, options: MachineOptions
+                      ) -> tuple[SceneDisplayList, MachineConfiguration]:
+    """Load a scene and choose its machine.  Raises ``InputError`` for whatever cannot be used."""
+    fields = options.machine()
+    width, height = fields.pop("width", None), fields.pop("height", None)
+    if isinstance(parse_scene(scene), DisplayListScene) and options.size is None:
+        width = height = None  # a saved list has its own size, whatever the preset's
+    listed = make_display_list(scene, width=width, height=height,
+                               shading="flat" if options.shading == "flat" else "gouraud")
+    bits = fields.pop("fraction_bits", "exact")
+    return listed, configure(listed.display_list, fraction_bits=None if bits == "exact" else bits,
+                             **fields)
+
+
+def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
+    """The machine for any scene of that size: exact for every triangle on the screen, unless the
+    options or the preset give the fraction bits.  Raises ``InputError``."""
+    fields = DEFAULT_SIZE | options.machine()
+    if fields.get("fraction_bits", "exact") != "exact":
+        return MachineConfiguration(**fields)
+    machine = MachineConfiguration(**fields | {"fraction_bits": 0})
+    bits = on_screen_fraction_bits(machine.width, machine.height, machine.sub_bits)
+    return replace(machine, fraction_bits=min(bits, MAX_FRACTION_BITS))
+
+
+def on_screen_fraction_bits(width: int, height: int, sub_bits: int) -> int:
+    """Fraction bits at which every triangle with all its vertices on the screen is exact.
+
+    None has more area than half the screen, or covers more columns and rows.
+    """
+    double_area = (width << sub_bits) * (height << sub_bits)
+    return exact_fraction_bits(double_area, width + height - 2)
+
+
+def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
+    """A line where the memory cannot hold the highest resolution."""
+    interlace = configuration.interlace
+    if (interlace.width, interlace.height) == (configuration.width, configuration.height):
+        return ()
+    return (f"{configuration.words} words in each memory unit hold {interlace.width}x"
+            f"{interlace.height} pixels, not {configuration.width}x{configuration.height}: the "
+            "picture is coarser",)
