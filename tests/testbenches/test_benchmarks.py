@@ -1,0 +1,28 @@
+"""The benchmarks print what they should; their figures are not judged here."""
+
+import re
+
+import pytest
+from click.testing import CliRunner
+
+from cardcage.testbenches import engine_benchmark, golden_benchmark
+from cardcage.testbenches.verilator_tool import ToolMissing, find_verilator
+
+
+def test_golden_benchmark():
+    done = CliRunner().invoke(golden_benchmark.main, ["--triangles", "500", "--runs", "2"])
+    assert done.exit_code == 0, done.output
+    assert re.search(r"500 triangles, [\d,]+ fragments, 512x512", done.output)
+    assert re.search(r"golden.exact +best +[\d.]+ ms, median +[\d.]+ ms", done.output)
+
+
+def test_engine_benchmark():
+    try:
+        find_verilator()
+    except ToolMissing as missing:
+        pytest.skip(f"simulator verilator: {missing}")
+    done = CliRunner().invoke(engine_benchmark.main, [
+        "--preset", "tiny", "--scene", "random:n=9", "--runs", "1", "--pysim-cycles", "512"])
+    assert done.exit_code == 0, done.output
+    assert re.search(r"bare loop +[\d,]+ cycles a second; ratio [\d.]+", done.output)
+    assert re.search(r"verilator is [\d,]+ times as fast", done.output)
