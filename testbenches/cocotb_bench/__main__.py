@@ -11,6 +11,7 @@ from ...golden.display_list import DisplayList
 from ...golden.errors import InputError
 from ..command_group import EXIT_DIFFERENT, EXIT_WRONG_INPUT
 from ..compare import Comparison, compare
+from ..interruption import Interrupted, interruptible
 from ..simulation import MachineError, Simulation, simulate
 from ..verilator_tool import ToolMissing
 from .engine import CocotbEngine
@@ -55,24 +56,34 @@ def main(verilog: Path, display_list: Path, simulator: str, configuration: Path 
     documents is broken, 2 the input is wrong or the simulator is missing.
     """
     try:
-        machine = read_configuration(configuration or verilog.with_suffix(".json"))
-        listed = DisplayList.load(display_list)
-        _check_match(machine, listed)
-        try:
-            text = verilog.read_text(encoding="utf-8")
-        except OSError as error:
-            raise InputError(f"{verilog}: {error.strerror}") from None
-        simulation = simulate(machine, listed, CocotbEngine(simulator, verilog=text),
-                              memory_seed=memory_seed, waveform=waveform,
-                              stall_seed=None if no_stalls else stall_seed)
+        with interruptible():
+            machine = read_configuration(configuration or verilog.with_suffix(".json"))
+            listed = DisplayList.load(display_list)
+            _check_match(machine, listed)
+            if waveform is not None and not waveform.parent.is_dir():
+                raise InputError(f"--waveform: there is no folder {waveform.parent}")
+            simulation = simulate(machine, listed, CocotbEngine(simulator, verilog=_text(verilog)),
+                                  memory_seed=memory_seed, waveform=waveform,
+                                  stall_seed=None if no_stalls else stall_seed)
+    except Interrupted as interruption:
+        raise SystemExit(interruption.status) from None
     except (AssertionError, TimeoutError, MachineError) as error:
         raise _Failure(f"{verilog}: {error}", EXIT_DIFFERENT) from None
-    except (InputError, ToolMissing, ValueError) as error:
+    except (InputError, ToolMissing) as error:
         raise _Failure(error, EXIT_WRONG_INPUT) from None
     comparison = compare(machine, listed, simulation)
     click.echo(_summary(simulation, comparison))
     if not comparison.equal:
         raise SystemExit(EXIT_DIFFERENT)
+
+
+def _text(verilog: Path) -> str:
+    try:
+        return verilog.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{verilog}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{verilog}: not a text in UTF-8; is this Verilog?") from None
 
 
 def _check_match(machine: MachineConfiguration, listed: DisplayList) -> None:

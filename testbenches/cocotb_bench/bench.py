@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Literal
 
 import cocotb
 from cocotb.clock import Clock
@@ -33,6 +34,10 @@ PROGRESS_CYCLES = 1024
 #: Clocks from a memory unit's read to the pins, and how long a pixel stays there, at most.
 _PIN_LATENCY = 4
 _PIXELS_HELD = 2
+_PORTS = (
+    "clk", "rst", "commands__valid", "commands__ready", "commands__payload", "responses__valid",
+    "responses__ready", "responses__payload", "pins__pixel", "pins__active",
+    "pins__horizontal_sync", "pins__vertical_sync", "pins__red", "pins__green", "pins__blue")
 _OPCODE = (1 << commands.OPCODE_BITS) - 1
 
 
@@ -41,18 +46,20 @@ async def frame(dut) -> None:
     """The job's commands pass, everything owed comes back, and no rule is broken on the way."""
     folder = Path(os.environ[FOLDER_VARIABLE])
     bench = _Bench(dut, read_job(folder), folder)
-    end, message = "done", ""
+
+    def report(end: Literal["done", "violation", "timeout"], message: object = "") -> None:
+        write_outcome(folder, Outcome(end, str(message), bench.cycle, bench.responses,
+                                      bench.monitor.scans))
+
     try:
         await bench.run()
     except AssertionError as violation:  # of ours, or of the video monitor's
-        end, message = "violation", str(violation)
+        report("violation", violation)
         raise
     except TimeoutError as timeout:
-        end, message = "timeout", str(timeout)
+        report("timeout", timeout)
         raise
-    finally:
-        write_outcome(folder, Outcome(end, message, bench.cycle, bench.responses,
-                                      bench.monitor.scans))
+    report("done")
 
 
 def _level(handle) -> int | None:
@@ -81,7 +88,7 @@ class _Bench:
         self._pins = PinCheck(job.configuration)
 
     async def run(self) -> None:
-        self._check_widths()
+        self._check_ports()
         dut = self.dut
         dut.rst.value = 1
         dut.commands__payload.value = 0
@@ -109,7 +116,10 @@ class _Bench:
         if self._booted is not None:
             check_scans(self.monitor.scans, self._clear_from, self._ended, self._shown)
 
-    def _check_widths(self) -> None:
+    def _check_ports(self) -> None:
+        for name in _PORTS:
+            if not hasattr(self.dut, name):
+                raise ProtocolError(f"the Verilog has no port {name}: it is no machine")
         expected = commands.command_bits(self.job.configuration)
         if len(self.dut.commands__payload) != expected:
             raise ProtocolError(

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ...golden.commands import ResponseKind
+from ...golden.errors import InputError
 from ...hdl.verilog import machine_verilog
 from ..engine import EngineRun, Job, Progress
 from ..verilator_tool import ToolMissing
@@ -33,9 +34,9 @@ class CocotbEngine:
     unknown at power-on, whatever the job's ``memory_seed``; with Verilator it is as the job says.
     Waveforms are those of the simulator: ``.fst`` from Icarus, ``.vcd`` from Verilator.
 
-    Raises ``ToolMissing`` where cocotb or the simulator is missing or cannot build the Verilog,
-    ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where it
-    hangs.
+    Raises ``ToolMissing`` where cocotb or the simulator is missing or fails, or cannot build the
+    Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where
+    it hangs.
     """
 
     def __init__(self, simulator: str = "verilator", verilog: str | None = None) -> None:
@@ -49,7 +50,7 @@ class CocotbEngine:
     def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
         waves = job.waveform is not None
         if waves and job.waveform.suffix != self._simulator.wave_suffix:
-            raise ValueError(f"{job.waveform}: {self._simulator.name} writes waveforms as "
+            raise InputError(f"{job.waveform}: {self._simulator.name} writes waveforms as "
                              f"{self._simulator.wave_suffix}")
         began = time.perf_counter()
         verilog = self._verilog or machine_verilog(job.configuration)
@@ -92,8 +93,8 @@ class CocotbEngine:
                     shutil.move(place, job.waveform)
         outcome = read_outcome(folder)
         if outcome is None:
-            raise RuntimeError(f"{self._simulator.name} ended with status {status} and no result: "
-                               f"{_first_error(log)}")
+            raise ToolMissing(f"{self._simulator.name} ended with status {status} and no result: "
+                              f"{_first_error(log)}")
         if outcome.end == "violation":
             raise ProtocolError(outcome.message)
         if outcome.end == "timeout":
