@@ -37,6 +37,10 @@ def bare_loop(engine: VerilatorEngine, configuration: MachineConfiguration, cycl
     return float(done.stdout)
 
 
+class _MeasuredError(Exception):
+    """Enough cycles are simulated."""
+
+
 def pysim_start(job: Job, cycles: int) -> float:
     """Cycles a second of pysim over the first cycles of the same frame."""
     began = time.perf_counter()
@@ -48,9 +52,9 @@ def pysim_start(job: Job, cycles: int) -> float:
             began, reached = time.perf_counter(), now
         elif now - reached >= cycles:
             reached = now - reached
-            raise KeyError("enough")
+            raise _MeasuredError
 
-    with suppress(KeyError):
+    with suppress(_MeasuredError):
         PysimEngine().run(job, stop)
     return reached / (time.perf_counter() - began)
 
