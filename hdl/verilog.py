@@ -144,9 +144,9 @@ def _flat_ports(component: wiring.Component):
 
 
 def component_ports(component: wiring.Component) -> list[Port]:
-    """The ports of a component's module, besides ``clk`` and ``rst``."""
+    """The ports of a component's module, besides ``clk`` and ``rst``; none are of no bits."""
     return [Port(name, "input" if flow == wiring.In else "output", len(value))
-            for name, flow, value in _flat_ports(component)]
+            for name, flow, value in _flat_ports(component) if len(value)]
 
 
 def component_verilog(component: wiring.Component, name: str) -> str:

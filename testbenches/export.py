@@ -30,6 +30,10 @@ COMPONENT_NAMES = (
 )
 
 
+#: Verilator's lint rules that do not apply, with reasons; copied beside every export.
+WAIVERS = files(__package__) / "templates" / "machine.vlt"
+
+
 @dataclass(frozen=True)
 class Export:
     """What was written.
@@ -78,7 +82,7 @@ def export(output: Path, scene: str | Path | None = None, options: MachineOption
         text, facts = _translated(configuration, component)
         text = _header(configuration, options, scene, component, precision) + text
         contents = (text, json.dumps(facts | {"precision": precision}, indent=1) + "\n",
-                    (files(__package__) / "templates" / "machine.vlt").read_text("utf-8"))
+                    WAIVERS.read_text("utf-8"))
         with output_errors(output, "-o"):
             for place, content in zip(places, contents, strict=True):
                 place.write_text(content, encoding="utf-8", newline="\n")

@@ -41,7 +41,7 @@ class _Failure(click.ClickException):
               metavar="SEED", help="Of the memories' contents at power-on in Verilator; Icarus "
               "has them unknown (X).")
 @click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE",
-              help="Record every signal: .vcd from Verilator, .fst from Icarus.")
+              help="Write every signal: .vcd from Verilator, .fst from Icarus.")
 def main(verilog: Path, display_list: Path, simulator: str, configuration: Path | None,
          stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
     """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.

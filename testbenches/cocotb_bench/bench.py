@@ -24,7 +24,7 @@ from .conversation_check import ConversationCheck
 from .exchange import FOLDER_VARIABLE, Outcome, read_job, write_outcome, write_progress
 from .pace import Pace
 from .pin_check import PinCheck, Pins
-from .scan_check import check_scans
+from .scan_check import check_scans, masked, owned_pixels
 from .stream_check import StreamCheck
 from .violation import ProtocolError
 
@@ -78,6 +78,7 @@ class _Bench:
         self.cycle = 0
         self._sent = 0
         self._booted: int | None = None
+        self._owned = owned_pixels(job.configuration)
         self._payload = 0
         self._all_ones = (1 << commands.command_bits(job.configuration)) - 1
         self._ended: list[int] = []
@@ -114,7 +115,7 @@ class _Bench:
                     f"commands taken, {len(self.responses)} of {self.job.responses} responses")
             await FallingEdge(dut.clk)
         if self._booted is not None:
-            check_scans(self.monitor.scans, self._clear_from, self._ended, self._shown)
+            check_scans(masked(self.monitor.scans, self._owned), self._clear_from, self._ended, self._shown)
 
     def _check_ports(self) -> None:
         for name in _PORTS:
@@ -193,7 +194,8 @@ class _Bench:
         self._pins.sample(self.cycle, pixel, pins)
         if pixel:
             if color is None:
-                if self._booted is not None and self.cycle >= self._clear_from:
+                if (self._owned.all() and self._booted is not None
+                        and self.cycle >= self._clear_from):
                     raise ProtocolError(f"cycle {self.cycle}: pins: a colour is unknown after "
                                             "the boot cleared the pictures")
                 color = 0

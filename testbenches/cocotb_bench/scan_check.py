@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ...golden.configuration import MachineConfiguration
 from ..engine import Scan
+from .conversation_check import domains
 from .violation import ProtocolError
 
 
@@ -40,6 +44,24 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
             if end <= scan.cycle < begin and not any(
                     np.array_equal(scan.picture, whole) for whole in (before, after)):
                 raise ProtocolError(_torn(scan, before, f"picture {number} or the next"))
+
+
+def owned_pixels(configuration: MachineConfiguration) -> NDArray[np.bool_]:
+    """(height, width), highest resolution: pixels whose memory unit has a processing element.
+
+    Nobody clears or draws the others.
+    """
+    interlace = configuration.interlace
+    y, x = np.mgrid[:configuration.height, :configuration.width]
+    units = interlace.unit(x >> interlace.x_shift, y >> interlace.y_shift)
+    owned = [unit for first, count in domains(configuration.cards)
+             for unit in range(first, first + count)]
+    return np.isin(units, owned)
+
+
+def masked(scans: Sequence[Scan], owned: NDArray[np.bool_]) -> list[Scan]:
+    """The scans with every pixel black that nobody owns."""
+    return [replace(scan, picture=scan.picture * owned[..., np.newaxis]) for scan in scans]
 
 
 def _torn(scan: Scan, expected: np.ndarray, name: str) -> str:

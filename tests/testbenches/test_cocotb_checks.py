@@ -9,7 +9,7 @@ from cardcage.golden.commands import Fault, Opcode, ResponseKind
 from cardcage.golden.configuration import MachineConfiguration
 from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck, domains
 from cardcage.testbenches.cocotb_bench.pin_check import PinCheck, Pins
-from cardcage.testbenches.cocotb_bench.scan_check import check_scans
+from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels
 from cardcage.testbenches.cocotb_bench.stream_check import StreamCheck
 from cardcage.testbenches.cocotb_bench.violation import ProtocolError
 from cardcage.testbenches.engine import Scan
@@ -195,3 +195,11 @@ def test_scans_show_whole_pictures(pictures, message):
     else:
         with pytest.raises(ProtocolError, match=message):
             check()
+
+
+def test_pixels_that_nobody_owns_are_left_out():
+    owned = owned_pixels(MachineConfiguration(cards="MPM", width=4, height=4, words=8,
+                                              allow_orphans=True))
+    np.testing.assert_array_equal(owned, [[y == 1] * 4 for y in (0, 1, 0, 1)])
+    [scan] = masked([Scan(3, picture(7))], owned)
+    np.testing.assert_array_equal(scan.picture, picture(7) * owned[..., None])
