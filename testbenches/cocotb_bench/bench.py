@@ -115,7 +115,8 @@ class _Bench:
                     f"commands taken, {len(self.responses)} of {self.job.responses} responses")
             await FallingEdge(dut.clk)
         if self._booted is not None:
-            check_scans(masked(self.monitor.scans, self._owned), self._clear_from, self._ended, self._shown)
+            check_scans(masked(self.monitor.scans, self._owned), self._clear_from, self._ended,
+                        self._shown)
 
     def _check_ports(self) -> None:
         for name in _PORTS:
