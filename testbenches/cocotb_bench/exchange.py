@@ -114,15 +114,12 @@ def read_configuration(path: Path) -> MachineConfiguration:
 
 def configuration_of(values: dict[str, Any]) -> MachineConfiguration:
     """A configuration from ``dataclasses.asdict`` of one, or from the fields that have no
-    default."""
-    known = {field.name for field in fields(MachineConfiguration)}
-    for name in values:
-        if name not in known:
-            raise InputError(f"configuration: {name}: no such field")
+    default; figures that follow from these may be among them."""
     for name in ("cards", "width", "height"):
         if name not in values:
             raise InputError(f"configuration: {name}: missing")
-    values = dict(values)
+    known = {field.name for field in fields(MachineConfiguration)}
+    values = {name: value for name, value in values.items() if name in known}
     if values.get("timing") is not None:
         try:
             values["timing"] = VideoTiming(**values["timing"])

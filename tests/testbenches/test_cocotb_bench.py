@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from cardcage.golden.configuration import configure
 from cardcage.golden.errors import InputError
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.hdl.description import describe
 from cardcage.hdl.verilog import machine_verilog
 from cardcage.testbenches.cocotb_bench import simulators
 from cardcage.testbenches.cocotb_bench.__main__ import main
@@ -88,7 +89,7 @@ def test_a_spoilt_netlist_is_told_by_its_first_wrong_pixel(tmp_path):
     name = some_simulator()
     verilog, listed = tmp_path / "machine.v", tmp_path / "list.npz"
     verilog.write_text(spoilt())
-    verilog.with_suffix(".json").write_text(json.dumps({"configuration": asdict(MACHINE)}))
+    verilog.with_suffix(".json").write_text(json.dumps(describe(MACHINE, spoilt())))
     LISTED.save(listed)
     done = subprocess.run(
         [sys.executable, "-m", "cardcage.testbenches.cocotb_bench", verilog, listed,
@@ -151,7 +152,7 @@ def test_what_is_missing_is_named(monkeypatch):
 
 def test_a_configuration_survives_its_description(tmp_path):
     described = tmp_path / "machine.json"
-    described.write_text(json.dumps({"configuration": asdict(MACHINE), "ports": []}))
+    described.write_text(json.dumps({"configuration": asdict(MACHINE) | {"figure": 4}, "top": ""}))
     assert read_configuration(described) == MACHINE
     short = {"cards": "PM", "width": 8, "height": 8}
     assert configuration_of(short).words == 64
@@ -162,7 +163,6 @@ def test_a_configuration_survives_its_description(tmp_path):
     ("{", "not a readable JSON file"),
     ("[]", "configuration: missing"),
     ('{"configuration": {"cards": "PM", "width": 8}}', "height: missing"),
-    ('{"configuration": {"colour": 3}}', "colour: no such field"),
     ('{"configuration": {"cards": "PM", "width": 0, "height": 8}}', "width: 0"),
     ('{"configuration": {"cards": "PM", "width": 8, "height": 8, "timing": {}}}', "timing: "),
 ])
