@@ -19,7 +19,7 @@ def plain_netlist(rtlil: str) -> str:
 
     Operands are extended, or cut, to the width in which the cell computes; ``$logic_not`` of a
     word becomes a comparison with zero; ``$pmux``, for which Verilog would need overlapping cases,
-    becomes a chain of ``$mux``.
+    becomes a chain of ``$mux``.  Ports of no bits are ports no more.
     """
     return "\n".join(_Rewriter().lines(iter(rtlil.splitlines()))) + "\n"
 
@@ -31,7 +31,8 @@ class _Rewriter:
     def lines(self, lines: Iterator[str]) -> Iterator[str]:
         for line in lines:
             if not line.startswith("  cell $"):
-                yield line
+                # What has no bits is no port in Verilog.
+                yield re.sub(r"^(  wire .*width 0) (?:input|output) \d+", r"\1", line)
                 continue
             _, kind, name = line.split()
             parts: dict[str, dict[str, str]] = {"parameter": {}, "connect": {}}
