@@ -29,7 +29,7 @@ def content_hash(parts: Iterable[str]) -> str:
     return digest.hexdigest()[:32]
 
 
-def cached(key: str, build: Callable[[Path], None]) -> tuple[Path, bool]:
+def cached(key: str, build: Callable[[Path], object]) -> tuple[Path, bool]:
     """The folder that ``build`` fills for ``key``, and whether it had to be built.
 
     ``build`` gets an empty folder under another name, which is renamed into place when it is

@@ -12,6 +12,7 @@ from amaranth.sim import Simulator
 from ..golden.commands import ResponseKind
 from ..hdl.machine import Machine
 from .engine import EngineRun, Job, Progress
+from .pace import Pace
 from .video_monitor import VideoMonitor
 
 #: Cycles between two calls of the progress function.
@@ -67,8 +68,8 @@ class _Run:
             self._scramble(ctx)
         commands, responses, pins = (self.machine.commands, self.machine.responses,
                                      self.machine.pins)
-        send = _Pace(ctx, commands.valid, self.job.stall_seed, salt=0)
-        receive = _Pace(ctx, responses.ready, self.job.stall_seed, salt=1)
+        send = Pace(self.job.stall_seed, salt=0)
+        receive = Pace(self.job.stall_seed, salt=1)
         words = iter(self.job.commands)
 
         def next_word() -> None:
@@ -81,21 +82,28 @@ class _Run:
 
         next_word()
         receive.go()
+        ctx.set(commands.valid, send.high)
+        ctx.set(responses.ready, receive.high)
         samples = ctx.tick().sample(
             commands.ready, responses.valid, responses.payload, pins.pixel, pins.active,
             pins.vertical_sync, Cat(pins.red, pins.green, pins.blue))
         async for _, _, taken, given, response, is_pixel, active, in_sync, color in samples:
             self.cycle += 1
-            if taken and send.high:
+            offered, open_ = send.high, receive.high
+            if taken and offered:
                 self.sent += 1
                 next_word()
             else:
                 send.wait()
-            if given and receive.high:
+            if given and open_:
                 self._receive(response)
                 receive.go()
             else:
                 receive.wait()
+            if send.high != offered:  # setting a signal costs time, even to what it is
+                ctx.set(commands.valid, send.high)
+            if receive.high != open_:
+                ctx.set(responses.ready, receive.high)
             if is_pixel:
                 self.monitor.sample(self.cycle, active, in_sync, color)
                 if self._finished():
@@ -123,35 +131,3 @@ class _Run:
         if self.shown_cycle is None:
             return True
         return bool(self.monitor.scans) and self.monitor.scans[-1].cycle > self.shown_cycle
-
-
-class _Pace:
-    """One handshake signal of the host: held high, or low for a random while before."""
-
-    def __init__(self, ctx, signal, seed: int | None, salt: int) -> None:
-        self._ctx = ctx
-        self._signal = signal
-        self._source = None if seed is None else random.Random(seed * 2 + salt)
-        self._pause = 0
-        self.high = False
-
-    def _set(self, high: bool) -> None:
-        if high != self.high:
-            self._ctx.set(self._signal, high)
-            self.high = high
-
-    def go(self) -> None:
-        """Offer the next transfer, after a pause: mostly none, now and then a long one."""
-        if self._source is not None:
-            self._pause = self._source.choice((0, 0, 0, 1, 2, self._source.randrange(20)))
-        self._set(self._pause == 0)
-
-    def wait(self) -> None:
-        """A clock without a transfer."""
-        if self._pause:
-            self._pause -= 1
-            self._set(self._pause == 0)
-
-    def stop(self) -> None:
-        self._pause = 0
-        self._set(False)

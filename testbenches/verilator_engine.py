@@ -80,8 +80,8 @@ class VerilatorEngine:
                                ("machine_constants.h", constants), ("once.vlt", ONCE)):
                 (folder / name).write_text(text)
             self.tool.run([*FLAGS, *self.tool.make_flags, "-CFLAGS", f"-I{folder}",
-                           "--Mdir", "model", "-o", "../machine", "once.vlt", "machine.v", "main.cpp"],
-                          folder)
+                           "--Mdir", "model", "-o", "../machine",
+                           "once.vlt", "machine.v", "main.cpp"], folder)
             shutil.rmtree(folder / "model")  # objects and headers: a hundred times the program
 
         folder, fresh = cached(key, build)

@@ -19,10 +19,10 @@ from cocotb.triggers import FallingEdge, ReadOnly
 from ...golden import commands
 from ...golden.commands import Opcode, ResponseKind
 from ..engine import Job
+from ..pace import Pace
 from ..video_monitor import VideoMonitor
 from .conversation_check import ConversationCheck
 from .exchange import FOLDER_VARIABLE, Outcome, read_job, write_outcome, write_progress
-from .pace import Pace
 from .pin_check import PinCheck, Pins
 from .scan_check import check_scans, masked, owned_pixels
 from .stream_check import StreamCheck

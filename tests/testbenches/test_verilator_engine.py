@@ -155,7 +155,7 @@ def test_a_cache_that_cannot_be_written_is_replaced(tmp_path, monkeypatch):
 
 def test_the_cache_command(tmp_path, monkeypatch):
     monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
-    model_cache.cached("key", lambda folder: (folder / "machine").write_bytes(bytes(3_000_000)) and None)
+    model_cache.cached("key", lambda folder: (folder / "model").write_bytes(bytes(3_000_000)))
     assert "3.0 MB in" in CliRunner().invoke(main, ["cache"]).output
     assert "3.0 MB removed" in CliRunner().invoke(main, ["cache", "--clear"]).output
     assert not (tmp_path / "cache").exists()

@@ -8,8 +8,8 @@ import random
 class Pace:
     """One handshake signal of the host: held high, or low for a random while before.
 
-    ``seed`` None never pauses.  The pauses are those of the ``pysim`` engine, so that the two
-    can be compared clock by clock.
+    ``seed`` None never pauses.  One seed gives every Python host the same pauses, so that their
+    runs can be compared clock by clock; ``salt`` tells the handshakes of one host apart.
     """
 
     def __init__(self, seed: int | None, salt: int) -> None:
