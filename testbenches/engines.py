@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..golden.errors import InputError
 from .engine import Engine, EngineRun, Job, Progress
-from .verilator_tool import ToolMissing
+from .verilator_tool import ToolMissingError
 
 #: Verilator where it works, else pysim.
 AUTO = "auto"
@@ -39,7 +39,7 @@ class AutoEngine:
         for name in fast if job.waveform is None else []:
             try:
                 return ENGINES[name]().run(job, progress)
-            except ToolMissing as missing:
+            except ToolMissingError as missing:
                 notes.append(f"{missing}; simulated with {last}, some hundred times slower")
         return replace(ENGINES[last]().run(job, progress), notes=tuple(notes))
 
@@ -52,5 +52,5 @@ def make_engine(name: str = AUTO) -> Engine:
         raise InputError(f"engine: {name!r} is none of {', '.join([AUTO, *ENGINES])}")
     try:
         return ENGINES[name]()
-    except ToolMissing as missing:
+    except ToolMissingError as missing:
         raise InputError(f"--engine {name}: {missing}; or use --engine pysim") from None

@@ -19,7 +19,7 @@ from .engines import AUTO, make_engine
 from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
 from .rendering import Rendering
 from .simulation import MachineError, Simulation, simulate
-from .verilator_tool import ToolMissing
+from .verilator_tool import ToolMissingError
 
 #: Pretty, and some 20 seconds in the slowest engine.
 DEFAULT_SCENE = "teapot:tessellation=3"
@@ -104,7 +104,7 @@ class RenderJob:
                             make_engine(self.options.engine),
                             memory_seed=self.options.random_memory, waveform=recording,
                             progress=progress)
-        except ToolMissing as missing:
+        except ToolMissingError as missing:
             raise InputError(f"--engine {self.options.engine}: {missing}; or use --engine "
                              "pysim") from None
         except (TimeoutError, AssertionError) as error:

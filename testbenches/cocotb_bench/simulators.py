@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ..verilator_tool import ToolMissing, find_verilator
+from ..verilator_tool import ToolMissingError, find_verilator
 
 #: Variables that would make cocotb's runner believe it was called for something else.
 _FOREIGN_VARIABLES = ("PYTEST_CURRENT_TEST", "WAVES", "GUI", "COCOTB_TEST_FILTER",
@@ -63,21 +63,21 @@ def _verilator() -> Simulator:
 def _icarus() -> Simulator:
     for program in ("iverilog", "vvp"):
         if shutil.which(program) is None:
-            raise ToolMissing(f"no Icarus Verilog: {program} is not on PATH; install the package "
+            raise ToolMissingError(f"no Icarus Verilog: {program} is not on PATH; install the package "
                               "iverilog of your distribution")
     return Simulator(name="icarus", environment=dict(os.environ), build_arguments=[],
                      wave_suffix=".fst")
 
 
-#: Finds each simulator, or raises ``ToolMissing``.
+#: Finds each simulator, or raises ``ToolMissingError``.
 SIMULATORS: dict[str, Callable[[], Simulator]] = {"verilator": _verilator, "icarus": _icarus}
 
 
 def find_simulator(name: str) -> Simulator:
-    """A simulator of ``SIMULATORS`` by name; ``ToolMissing`` says what is not there and how to get
+    """A simulator of ``SIMULATORS`` by name; ``ToolMissingError`` says what is not there and how to get
     it."""
     if importlib.util.find_spec("cocotb_tools") is None:
-        raise ToolMissing("no cocotb: pip install 'cardcage[cocotb]'")
+        raise ToolMissingError("no cocotb: pip install 'cardcage[cocotb]'")
     found = SIMULATORS[name]()
     for variable in _FOREIGN_VARIABLES:
         found.environment.pop(variable, None)

@@ -9,13 +9,13 @@ from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_job, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine
-from cardcage.testbenches.verilator_tool import ToolMissing, find_verilator
+from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
 
 
 def test_three_identical_frames():
     try:
         find_verilator()
-    except ToolMissing as missing:
+    except ToolMissingError as missing:
         pytest.skip(f"simulators verilator and cocotb: {missing}")
     display_list = random_list(17, 10, width=12, height=10)
     configuration = configure(display_list, cards="PMPMMM", clocks_per_pixel=2)

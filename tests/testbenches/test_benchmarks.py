@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from cardcage.testbenches import engine_benchmark, golden_benchmark
-from cardcage.testbenches.verilator_tool import ToolMissing, find_verilator
+from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
 
 
 def test_golden_benchmark():
@@ -19,7 +19,7 @@ def test_golden_benchmark():
 def test_engine_benchmark():
     try:
         find_verilator()
-    except ToolMissing as missing:
+    except ToolMissingError as missing:
         pytest.skip(f"simulator verilator: {missing}")
     done = CliRunner().invoke(engine_benchmark.main, [
         "--preset", "tiny", "--scene", "random:n=9", "--runs", "1", "--pysim-cycles", "512"])

@@ -27,7 +27,7 @@ from cardcage.testbenches.cocotb_bench.violation import ProtocolError
 from cardcage.testbenches.compare import compare
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_commands, frame_job, simulate
-from cardcage.testbenches.verilator_tool import ToolMissing
+from cardcage.testbenches.verilator_tool import ToolMissingError
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "simulate-the-verilog.md"
 LISTED = make_display_list("random:n=10,size=8,seed=5", width=8, height=8).display_list
@@ -39,7 +39,7 @@ def found(name):
     """The simulator's engine, or a skip that names it and how to get it."""
     try:
         find_simulator(name)
-    except ToolMissing as missing:
+    except ToolMissingError as missing:
         pytest.skip(f"{name}: {missing}")
     return CocotbEngine(name)
 
@@ -49,7 +49,7 @@ def some_simulator():
     for name in reversed(SIMULATORS):
         try:
             find_simulator(name)
-        except ToolMissing:
+        except ToolMissingError:
             continue
         return name
     return pytest.skip("neither Icarus Verilog nor Verilator is here")
@@ -128,7 +128,7 @@ endmodule
 
 def test_verilog_that_does_not_build_is_one_sentence():
     name = some_simulator()
-    with pytest.raises(ToolMissing, match=f"^{name} cannot build the Verilog: .*machine.v:2"):
+    with pytest.raises(ToolMissingError, match=f"^{name} cannot build the Verilog: .*machine.v:2"):
         CocotbEngine(name, verilog="module machine(input clk);\nwire = ;\nendmodule\n").run(
             frame_job(MACHINE, LISTED))
 
@@ -141,12 +141,12 @@ def test_verilog_of_something_else_is_one_sentence():
 
 def test_what_is_missing_is_named(monkeypatch):
     monkeypatch.setenv("PATH", "")
-    with pytest.raises(ToolMissing, match="iverilog is not on PATH; install"):
+    with pytest.raises(ToolMissingError, match="iverilog is not on PATH; install"):
         find_simulator("icarus")
-    with pytest.raises(ToolMissing, match="Verilator needs make"):
+    with pytest.raises(ToolMissingError, match="Verilator needs make"):
         find_simulator("verilator")
     monkeypatch.setattr(simulators.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(ToolMissing, match=r"pip install 'cardcage\[cocotb\]'"):
+    with pytest.raises(ToolMissingError, match=r"pip install 'cardcage\[cocotb\]'"):
         find_simulator("icarus")
 
 

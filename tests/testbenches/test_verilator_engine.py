@@ -20,14 +20,14 @@ from cardcage.testbenches.compare import compare
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_job, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine
-from cardcage.testbenches.verilator_tool import ToolMissing, find_verilator
+from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
 
 LIST = make_display_list("random:n=25,size=9,seed=3", width=16, height=12).display_list
 CONFIGURATION = configure(LIST, cards="PMPMMM", clocks_per_pixel=2)
 
 try:
     find_verilator()
-except ToolMissing as missing:
+except ToolMissingError as missing:
     pytest.skip(f"simulator verilator: {missing}", allow_module_level=True)
 
 
