@@ -34,8 +34,8 @@ class CocotbEngine:
     unknown at power-on, whatever the job's ``memory_seed``; with Verilator it is as the job says.
     Waveforms are those of the simulator: ``.fst`` from Icarus, ``.vcd`` from Verilator.
 
-    Raises ``ToolMissingError`` where cocotb or the simulator is missing or fails, or cannot build the
-    Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where
+    Raises ``ToolMissingError`` where cocotb or the simulator is missing or fails, or cannot build
+    the Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where
     it hangs.
     """
 
@@ -93,8 +93,8 @@ class CocotbEngine:
                     shutil.move(place, job.waveform)
         outcome = read_outcome(folder)
         if outcome is None:
-            raise ToolMissingError(f"{self._simulator.name} ended with status {status} and no result: "
-                              f"{_first_error(log)}")
+            raise ToolMissingError(f"{self._simulator.name} ended with status {status} and no "
+                                   f"result: {_first_error(log)}")
         if outcome.end == "violation":
             raise ProtocolError(outcome.message)
         if outcome.end == "timeout":

@@ -63,8 +63,8 @@ def _verilator() -> Simulator:
 def _icarus() -> Simulator:
     for program in ("iverilog", "vvp"):
         if shutil.which(program) is None:
-            raise ToolMissingError(f"no Icarus Verilog: {program} is not on PATH; install the package "
-                              "iverilog of your distribution")
+            raise ToolMissingError(f"no Icarus Verilog: {program} is not on PATH; install the "
+                                   "package iverilog of your distribution")
     return Simulator(name="icarus", environment=dict(os.environ), build_arguments=[],
                      wave_suffix=".fst")
 
@@ -74,8 +74,8 @@ SIMULATORS: dict[str, Callable[[], Simulator]] = {"verilator": _verilator, "icar
 
 
 def find_simulator(name: str) -> Simulator:
-    """A simulator of ``SIMULATORS`` by name; ``ToolMissingError`` says what is not there and how to get
-    it."""
+    """A simulator of ``SIMULATORS`` by name; ``ToolMissingError`` says what is not there and how
+    to get it."""
     if importlib.util.find_spec("cocotb_tools") is None:
         raise ToolMissingError("no cocotb: pip install 'cardcage[cocotb]'")
     found = SIMULATORS[name]()

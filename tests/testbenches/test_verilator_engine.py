@@ -162,8 +162,8 @@ def test_the_cache_command(tmp_path, monkeypatch):
 
 
 def render(folder, *arguments):
-    return CliRunner().invoke(main, ["render", "random:n=5,size=6", "--size", "8x8", "--cards", "PM",
-                                     "--out", str(folder), *arguments])
+    return CliRunner().invoke(main, ["render", "random:n=5,size=6", "--size", "8x8",
+                                     "--cards", "PM", "--out", str(folder), *arguments])
 
 
 def test_without_a_compiler_auto_says_so_and_takes_pysim(tmp_path, monkeypatch):
