@@ -67,7 +67,8 @@ class CentralBroadcastController(wiring.Component):
         packet = Signal(broadcast_layout(self.configuration))
         m.d.comb += self.broadcast.packet.eq(packet)
 
-        cycles, frame_cycles, scans, owned = (Signal(32) for _ in range(4))
+        cycles, frame_cycles, scans, owned = (
+            Signal(32, name=name) for name in ("cycles", "frame_cycles", "scans", "owned"))
         settle = Signal(range(SETTLE_CLOCKS + 1))
         quiet = self.broadcast.done & (settle == 0)
         m.d.sync += [cycles.eq(cycles + 1), frame_cycles.eq(frame_cycles + 1)]
@@ -186,7 +187,8 @@ class CentralBroadcastController(wiring.Component):
 
     def _picture(self, m):
         """Whether the number of units is one the cards can interlace, and the resolution."""
-        supported, picture = Signal(), Signal(32)
+        supported = Signal()
+        picture = Signal(32)
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):

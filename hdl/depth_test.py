@@ -53,10 +53,13 @@ class DepthTest(wiring.Component):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
         layout = fragment_layout(self.configuration)
-        answer, compare, write, written = (Signal(layout) for _ in range(4))
-        answering, comparing, winning, has_written = (Signal() for _ in range(4))
+        answer, compare, write, written = (
+            Signal(layout, name=name) for name in ("answer", "compare", "write", "written"))
+        answering, comparing, winning, has_written = (
+            Signal(name=name) for name in ("answering", "comparing", "winning", "has_written"))
         fresh = Signal()  # the answer is on the lines in this clock only
-        held, stored = (Signal(self.configuration.depth_bits) for _ in range(2))
+        held, stored = (Signal(self.configuration.depth_bits, name=name)
+                        for name in ("held", "stored"))
 
         # Each stage moves on when the next one is empty or moves on itself.
         write_moves = ~winning | ~memory.write_busy
@@ -85,7 +88,8 @@ class DepthTest(wiring.Component):
         def same_pixel(valid, other):
             return (valid & (other.unit == compare.unit) & (other.address == compare.address))
 
-        waiting, done = Signal(), Signal()
+        waiting = Signal()
+        done = Signal()
         nearest = Signal.like(stored)
         m.d.comb += [
             waiting.eq(same_pixel(winning, write)),

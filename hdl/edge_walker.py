@@ -55,8 +55,10 @@ class EdgeWalker(wiring.Component):
         m = Module()
         column_bits = self.configuration.edge_column_bits
         remainder_bits = self.configuration.edge_remainder_bits
-        column, column_step = Signal(column_bits), Signal(column_bits)
-        remainder, remainder_step = Signal(remainder_bits), Signal(remainder_bits)
+        column = Signal(column_bits)
+        column_step = Signal(column_bits)
+        remainder = Signal(remainder_bits)
+        remainder_step = Signal(remainder_bits)
 
         def add(quotients, remainders):
             """Quotient and remainder of a sum; the remainders' sum is below twice the divisor."""

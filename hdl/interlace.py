@@ -48,7 +48,8 @@ class PixelAddress(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         interlaces = self.configuration.interlaces()
-        row, column = Signal.like(self.y), Signal.like(self.x)
+        row = Signal.like(self.y)
+        column = Signal.like(self.x)
         pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))
         with m.Switch(self.total):
             for interlace in interlaces:

@@ -67,7 +67,8 @@ class MemoryUnit(wiring.Component):
         """Fetch, capture, drive: one clock each."""
         m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
         m.submodules.show = show = ScanAddress(configuration=self.configuration)
-        scan_read, captured = Signal(), Signal()
+        scan_read = Signal()
+        captured = Signal()
         scan_address = Signal(self.configuration.address_bits)
         output = Signal.like(self.scan.video)
         scan = wires(m, "scan_wires")
@@ -90,7 +91,9 @@ class MemoryUnit(wiring.Component):
         """Scan first, then the processing element's write, then its read."""
         lines, onward = self.left.lines, self.right.lines
         write, read = lines.write, lines.read
-        write_here, read_here, answered = Signal(), Signal(), Signal()
+        write_here = Signal()
+        read_here = Signal()
+        answered = Signal()
         wires(m, "line_wires").d.comb += [onward.write.eq(write), onward.read.eq(read)]
         m.d.comb += [
             write_here.eq(write.valid & (write.every | (write.unit == number))),

@@ -155,7 +155,8 @@ class ProcessingElement(wiring.Component):
 
     def _count(self, m, control, depth_test):
         """Work since the frame start, whose clear also restarts the counts."""
-        fragments, busy_cycles = Signal(COUNTER_BITS), Signal(COUNTER_BITS)
+        fragments = Signal(COUNTER_BITS)
+        busy_cycles = Signal(COUNTER_BITS)
         taken = depth_test.fragments.valid & depth_test.fragments.ready
         m.d.sync += [
             fragments.eq(fragments + taken),

@@ -65,13 +65,15 @@ class SpanWalker(wiring.Component):
             block.end.eq(self.end),
         ]
 
-        x_offset, y_offset = Signal.like(block.x_offset), Signal.like(block.y_offset)
+        x_offset = Signal.like(block.x_offset)
+        y_offset = Signal.like(block.y_offset)
         x_stride_bits = Signal.like(block.x_stride_bits)
         to_double = Signal.like(block.y_stride_bits)
         # One stride may lead past the bottom of a picture smaller than the lattice.
         y = Signal(range(self.configuration.height + 2 * self.configuration.maximum_units))
         y_stride = Signal.like(y)
-        upper_steps, lower_steps = Signal.like(y_offset), Signal.like(y_offset)
+        upper_steps = Signal.like(y_offset)
+        lower_steps = Signal.like(y_offset)
 
         def rows_to_lattice(row):
             mask = (1 << block.y_stride_bits) - 1
@@ -133,8 +135,10 @@ class SpanWalker(wiring.Component):
         """Drive the span of this row; whether it holds no lattice pixel."""
         triangle, span = self.triangles.payload, self.spans.payload
         column_shape = edges["long"].column.shape()
-        short, left, right = (Signal(column_shape) for _ in range(3))
-        begin, end = Signal(self.configuration.x_bits), Signal(self.configuration.x_bits)
+        short, left, right = (Signal(column_shape, name=name)
+                              for name in ("short", "left", "right"))
+        begin = Signal(self.configuration.x_bits)
+        end = Signal(self.configuration.x_bits)
         low, high = triangle.left, triangle.right
         m.d.comb += [
             short.eq(Mux(y < triangle.middle, edges["upper"].column, edges["lower"].column)),

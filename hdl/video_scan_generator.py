@@ -85,8 +85,10 @@ class VideoScanGenerator(wiring.Component):
         # Order on both axes: sync, back porch, active, front porch.
         left = timing.horizontal_sync + timing.horizontal_back
         top = timing.vertical_sync + timing.vertical_back
-        pixel, active = Signal(), Signal()
-        horizontal_sync, vertical_sync = Signal(), Signal()
+        pixel = Signal()
+        active = Signal()
+        horizontal_sync = Signal()
+        vertical_sync = Signal()
         m.d.comb += [
             pixel.eq(clock == 0),
             active.eq((column >= left) & (column < left + timing.horizontal_active)

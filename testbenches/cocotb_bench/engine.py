@@ -35,8 +35,8 @@ class CocotbEngine:
     Waveforms are those of the simulator: ``.fst`` from Icarus, ``.vcd`` from Verilator.
 
     Raises ``ToolMissingError`` where cocotb or the simulator is missing or fails, or cannot build
-    the Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError`` where
-    it hangs.
+    the Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError``
+    where it hangs.
     """
 
     def __init__(self, simulator: str = "verilator", verilog: str | None = None) -> None:

@@ -153,3 +153,9 @@ def test_description(texts):
 
 def test_the_command_lines_names_are_the_components():
     assert tuple(COMPONENTS) == COMPONENT_NAMES
+
+
+def test_every_register_has_a_name():
+    """Amaranth calls a signal that it found no name for ``$signal`` or ``$like``."""
+    text = machine_verilog(preset("tiny"))
+    assert not re.findall(r"\$(?:signal|like)\b", text)
