@@ -137,27 +137,27 @@ class SpanWalker(wiring.Component):
         column_shape = edges["long"].column.shape()
         short, left, right = (Signal(column_shape, name=name)
                               for name in ("short", "left", "right"))
-        begin = Signal(self.configuration.x_bits)
-        end = Signal(self.configuration.x_bits)
+        from_column = Signal(self.configuration.x_bits)
+        to_column = Signal(self.configuration.x_bits)
         low, high = triangle.left, triangle.right
         m.d.comb += [
             short.eq(Mux(y < triangle.middle, edges["upper"].column, edges["lower"].column)),
             left.eq(Mux(triangle.long_edge_left, edges["long"].column, short)),
             right.eq(Mux(triangle.long_edge_left, short, edges["long"].column)),
-            begin.eq(Mux(left < low, low, Mux(left > high, high, left))),
-            end.eq(Mux(right < low, low, Mux(right > high, high, right))),
+            from_column.eq(Mux(left < low, low, Mux(left > high, high, left))),
+            to_column.eq(Mux(right < low, low, Mux(right > high, high, right))),
         ]
         mask = Signal(self.configuration.x_bits)
         x = Signal(range(self.configuration.width + self.configuration.maximum_units))
         m.d.comb += [
             mask.eq((1 << x_stride_bits) - 1),
-            x.eq(begin + ((x_offset - begin) & mask)),
+            x.eq(from_column + ((x_offset - from_column) & mask)),
             span.x.eq(x),
             span.y.eq(y),
             span.x_steps.eq(x - triangle.left),
             span.y_steps.eq(y - triangle.top),
-            span.more.eq((end - 1 - x) >> x_stride_bits),
+            span.more.eq((to_column - 1 - x) >> x_stride_bits),
             span.x_stride_bits.eq(x_stride_bits),
             span.planes.eq(triangle.planes),
         ]
-        return x >= end
+        return x >= to_column
