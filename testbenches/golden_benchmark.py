@@ -19,12 +19,12 @@ from ..golden.scene_display_list import make_display_list
 
 _VERTEX = """
 #version 330
-in vec3 position; in vec3 color; flat out vec3 tint;
+in vec3 position; in vec3 color; out vec3 tint;
 void main() { gl_Position = vec4(position, 1.0); tint = color; }
 """
 _FRAGMENT = """
 #version 330
-flat in vec3 tint; out vec4 pixel;
+in vec3 tint; out vec4 pixel;
 void main() { pixel = vec4(tint, 1.0); }
 """
 
