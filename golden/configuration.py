@@ -10,6 +10,7 @@ from .display_list import DisplayList, coordinate_bits
 from .errors import InputError
 from .fixed import MAX_FRACTION_BITS
 from .interlace import Interlace, interlace_for
+from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .setup import (
     COLOR_BITS,
     color_word_bits,
@@ -21,7 +22,6 @@ from .setup import (
 from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 
-MAXIMUM_SIZE = 4096
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
 CHANNEL_BITS = COLOR_BITS
 
@@ -68,20 +68,14 @@ class MachineConfiguration:
             raise InputError(f"cards: {self.cards!r} is no card order; write one such as 2x(PMM)")
         fix("cards", parse_cards(self.cards))
         for name, low, high in (
-            ("width", 1, MAXIMUM_SIZE),
-            ("height", 1, MAXIMUM_SIZE),
-            ("sub_bits", 1, 8),
-            ("depth_bits", 2, 32),
+            *FORMAT_RANGES,
             ("fraction_bits", 0, MAX_FRACTION_BITS),
             ("words", 0, MAXIMUM_WORDS),
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
             ("clocks_per_pixel", 2, 256),
         ):
-            value = getattr(self, name)
-            whole = isinstance(value, int) and not isinstance(value, bool)
-            if not whole or not low <= value <= high:
-                raise InputError(f"{name}: {value!r} is not a whole number from {low} to {high}")
+            check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
             raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")
         if not self.allow_orphans:

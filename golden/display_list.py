@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .ranges import FORMAT_RANGES, check_whole
 
 FORMAT_VERSION = 1
 
@@ -59,15 +60,8 @@ class DisplayList:
         def wrong(field: str, remedy: str) -> InputError:
             return InputError(f"{source}: {field}: {remedy}")
 
-        for field, low, high in (
-            ("width", 1, 4096),
-            ("height", 1, 4096),
-            ("sub_bits", 1, 8),
-            ("depth_bits", 2, 32),
-        ):
-            value = getattr(self, field)
-            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-                raise wrong(field, f"{value!r} is not a whole number from {low} to {high}")
+        for field, low, high in FORMAT_RANGES:
+            check_whole(f"{source}: {field}", getattr(self, field), low, high)
         if len(self.background) != 3 or not all(0 <= c <= 255 for c in self.background):
             raise wrong("background", "needs three numbers from 0 to 255")
         count = len(self.position) if self.position.ndim else 0

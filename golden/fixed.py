@@ -13,7 +13,7 @@ from typing import Any, cast, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InputError
+from .ranges import check_whole
 
 Array = NDArray[Any]
 
@@ -158,8 +158,4 @@ def guard_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
 
 def check_fraction_bits(fraction_bits: int) -> None:
     """Raise ``InputError`` unless it is a whole number from 0 to ``MAX_FRACTION_BITS``."""
-    whole = isinstance(fraction_bits, int) and not isinstance(fraction_bits, bool)
-    if not whole or not 0 <= fraction_bits <= MAX_FRACTION_BITS:
-        raise InputError(
-            f"fraction bits: {fraction_bits!r} is not a whole number from 0 to {MAX_FRACTION_BITS}"
-        )
+    check_whole("fraction bits", fraction_bits, 0, MAX_FRACTION_BITS)

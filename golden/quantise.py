@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .display_list import coordinate_bits
-from .errors import InputError
+from .ranges import FORMAT_RANGES, check_whole
 
 
 @dataclass(frozen=True)
@@ -28,16 +28,8 @@ class PictureFormat:
     depth_bits: int = 24
 
     def __post_init__(self) -> None:
-        for field, low, high in (
-            ("width", 1, 4096),
-            ("height", 1, 4096),
-            ("sub_bits", 1, 8),
-            ("depth_bits", 2, 32),
-        ):
-            value = getattr(self, field)
-            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-                raise InputError(f"picture: {field}: {value!r} is not a whole number from "
-                                 f"{low} to {high}")
+        for field, low, high in FORMAT_RANGES:
+            check_whole(f"picture: {field}", getattr(self, field), low, high)
 
     @property
     def guard_band(self) -> int:

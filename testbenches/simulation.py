@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..golden import commands
+from ..golden.cards import domains
 from ..golden.commands import Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
 from ..golden.display_list import DisplayList
@@ -108,8 +109,7 @@ def frame_job(
              commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
     interlace, elements = configuration.interlace, configuration.processing_elements
     boot = elements + 3  # domains, units, picture, booted
-    orphans = len(configuration.cards) - len(configuration.cards.lstrip("M"))
-    depths = (interlace.units - orphans) * interlace.words
+    depths = sum(units for _, units in domains(configuration.cards)) * interlace.words
     return Job(
         configuration=configuration,
         commands=words,
