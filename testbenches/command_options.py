@@ -8,8 +8,9 @@ from typing import Any
 
 import click
 
-from ..golden.configuration import MAXIMUM_SIZE, MAXIMUM_WORDS, PRESETS
+from ..golden.configuration import MAXIMUM_WORDS, PRESETS
 from ..golden.fixed import MAX_FRACTION_BITS
+from ..golden.ranges import MAXIMUM_SIZE
 
 
 class Size(click.ParamType):

@@ -79,7 +79,7 @@ def test_memories_are_random_at_power_on():
     assert not videos[2][::2].any()
 
 
-def test_a_model_is_built_once(engine, cache, monkeypatch):
+def test_a_model_is_built_once(engine, cache):
     reports = []
     run = engine.run(frame_job(CONFIGURATION, LIST), lambda *now: reports.append(now))
     assert run.build_seconds == 0
