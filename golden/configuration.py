@@ -13,8 +13,7 @@ from .interlace import Interlace, interlace_for
 from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .setup import (
     COLOR_BITS,
-    color_word_bits,
-    depth_word_bits,
+    carried_word_bits,
     edge_column_bits,
     edge_remainder_bits,
     scene_fraction_bits,
@@ -43,6 +42,16 @@ class MachineConfiguration:
     ``timing``            blanking and sync of a scan; None means the standard one for the size
     ``allow_orphans``     accept memory units left of every processing element
 
+    The rest is for a machine that is to draw less than every triangle of the guard band;
+    ``plan`` says what a scene needs.  Left at 0 or None, all of them fit.
+
+    ``coordinate_bits``      of a signed vertex coordinate
+    ``edge_column_bits``     of a signed column on an edge's own rows
+    ``edge_remainder_bits``  of an edge's height, in sub-pixel units
+    ``depth_range_bits``     of the greatest vertex depth; stored depths keep ``depth_bits``
+    ``triangle_extent``      pixels from the corner of a triangle's box to its farthest pixel,
+                             right and down together
+
     Raises ``InputError`` where a number is out of range or the cards do not make a machine.
     """
 
@@ -59,6 +68,11 @@ class MachineConfiguration:
     clocks_per_pixel: int = 4
     timing: VideoTiming = field(default=None)  # type: ignore[assignment]
     allow_orphans: bool = False
+    coordinate_bits: int = 0
+    edge_column_bits: int = 0
+    edge_remainder_bits: int = 0
+    depth_range_bits: int = 0
+    triangle_extent: int = field(default=None)  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -78,6 +92,13 @@ class MachineConfiguration:
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
             raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")
+        for name, most in self._widest().items():
+            check_whole(name, getattr(self, name), 0, most)
+            fix(name, getattr(self, name) or most)
+        farthest = self.width + self.height - 2
+        if self.triangle_extent is None:
+            fix("triangle_extent", farthest)
+        check_whole("triangle_extent", self.triangle_extent, 0, farthest)
         if not self.allow_orphans:
             check_cards(self.cards)
         if not self.words:
@@ -99,6 +120,16 @@ class MachineConfiguration:
             raise InputError(f"timing: shows {self.timing.horizontal_active}x"
                              f"{self.timing.vertical_active}, the machine draws "
                              f"{self.width}x{self.height}")
+
+    def _widest(self) -> dict[str, int]:
+        """The widths at which every triangle of the guard band fits."""
+        coordinate = coordinate_bits(self.width, self.height, self.sub_bits)
+        return {
+            "coordinate_bits": coordinate,
+            "edge_column_bits": edge_column_bits(coordinate, self.sub_bits),
+            "edge_remainder_bits": edge_remainder_bits(coordinate),
+            "depth_range_bits": self.depth_bits,
+        }
 
     # Cards
 
@@ -142,24 +173,13 @@ class MachineConfiguration:
         return max(1, (self.words - 1).bit_length())
 
     @property
-    def coordinate_bits(self) -> int:
-        return coordinate_bits(self.width, self.height, self.sub_bits)
-
-    @property
-    def edge_column_bits(self) -> int:
-        return edge_column_bits(self.coordinate_bits, self.sub_bits)
-
-    @property
-    def edge_remainder_bits(self) -> int:
-        return edge_remainder_bits(self.coordinate_bits)
-
-    @property
     def depth_plane_bits(self) -> int:
-        return depth_word_bits(self.depth_bits, self.fraction_bits, self.width, self.height)
+        """Carried depth; sums wrap, values at covered pixels fit with their error."""
+        return carried_word_bits(self.depth_range_bits, self.fraction_bits, self.triangle_extent)
 
     @property
     def channel_plane_bits(self) -> int:
-        return color_word_bits(self.fraction_bits, self.width, self.height)
+        return carried_word_bits(CHANNEL_BITS, self.fraction_bits, self.triangle_extent)
 
     @property
     def depth_background(self) -> int:

@@ -5,14 +5,15 @@ by row with a quotient and a remainder (exact for every triangle), and per
 interpolant a start and two increments, rounded half up at ``2**-fraction_bits``
 and kept modulo a power of two.
 
-Widths a machine needs, b the display list's coordinate bits, s its sub-pixel bits:
+Widths at which every triangle fits, b the display list's coordinate bits, s its sub-pixel bits:
 
     edge column      ``edge_column_bits``      b - s + 1, signed
     edge remainder   ``edge_remainder_bits``   b, unsigned; remainder + step needs one more
     depth word       ``depth_word_bits``       depth bits + guard + fraction bits
     colour word      ``color_word_bits``       8 + guard + fraction bits
 
-The guard is for the highest resolution, at whatever resolution the machine draws.
+The guard is for the highest resolution, at whatever resolution the machine draws.  A machine
+for one scene may have narrower words (``scene_needs``): it keeps the low bits of these.
 """
 
 from __future__ import annotations
@@ -51,24 +52,25 @@ def edge_remainder_bits(coordinate_bits: int) -> int:
     return coordinate_bits
 
 
-def depth_guard_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
-    """Guard bits of carried depth on a machine built for ``width`` x ``height`` pixels."""
-    return fixed.guard_bits(depth_bits, fraction_bits, width + height - 2)
+def carried_word_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
+    """Width of an interpolant whose vertices hold values below ``2**value_bits``.
 
-
-def color_guard_bits(fraction_bits: int, width: int, height: int) -> int:
-    """Guard bits of a carried channel on a machine built for ``width`` x ``height`` pixels."""
-    return fixed.guard_bits(COLOR_BITS, fraction_bits, width + height - 2)
+    ``extent`` bounds x + y, in pixels, from the corner of a triangle's clipped
+    bounding box.  Sums are kept modulo a power of two, so whatever is wide
+    enough for the values at covered pixels and their error gives these values:
+    a wider word holds the same number with its sign repeated.
+    """
+    return value_bits + fixed.guard_bits(value_bits, fraction_bits, extent) + fraction_bits
 
 
 def depth_word_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
-    """Width of carried depth: a function of the machine, not of what it draws."""
-    return depth_bits + depth_guard_bits(depth_bits, fraction_bits, width, height) + fraction_bits
+    """Width of carried depth at which every triangle of a ``width`` x ``height`` screen fits."""
+    return carried_word_bits(depth_bits, fraction_bits, width + height - 2)
 
 
 def color_word_bits(fraction_bits: int, width: int, height: int) -> int:
-    """Width of a carried colour channel: a function of the machine alone."""
-    return COLOR_BITS + color_guard_bits(fraction_bits, width, height) + fraction_bits
+    """Width of a carried colour channel at which every triangle of the screen fits."""
+    return carried_word_bits(COLOR_BITS, fraction_bits, width + height - 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,8 +290,8 @@ def prepare(
     top, bottom = boxes.top, boxes.bottom
 
     solver = _PlaneSolver(boxes, grid, fraction_bits)
-    # A machine is built for the highest resolution; one that lost memory units
-    # draws fewer pixels in words as wide.
+    # Wide enough for every machine: one that lost memory units draws fewer pixels
+    # in words as wide, one for a single scene keeps the low bits that it has.
     screen = display_list.width, display_list.height
     word_bits = depth_word_bits(display_list.depth_bits, fraction_bits, *screen)
     color: tuple[Planes, Planes, Planes] | None = None
