@@ -121,10 +121,9 @@ def draw(
             right = (runs.first.take(span) + column) - prepared.left.take(triangle)
             down = runs.row.take(span) - prepared.top.take(triangle)
             buffer.add(runs, span, column, depth.at(triangle, right, down))
-    visible = buffer.visible()
-    winner = found.take(visible.triangle)
-    color = _colors(prepared, winner, visible.x, visible.y)
-    return buffer.picture(display_list, triangles, visible, color)
+    return buffer.picture(
+        display_list, triangles,
+        lambda seen: _colors(prepared, found.take(seen.triangle), seen.x, seen.y))
 
 
 def _colors(prepared: PreparedTriangles, triangle: Int64, x: Int64, y: Int64) -> NDArray[np.uint8]:

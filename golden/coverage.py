@@ -23,13 +23,15 @@ from .display_list import DisplayList
 from .grid import Grid
 
 Int64 = NDArray[np.int64]
+Float64 = NDArray[np.float64]
 #: int32 where the triangles are small enough, int64 otherwise.
 Integers = NDArray[Any]
 
-#: Rows and fragments handled at once: small enough to stay in the cache, large
-#: enough that the cost of a numpy call is spread over many elements.
-ROW_LIMIT = 1 << 18
-FRAGMENT_LIMIT = 1 << 18
+#: Rows and fragments handled at once: few enough that their arrays stay in the cache and
+#: are handed out again by the allocator in place of fresh pages, which cost more than the
+#: arithmetic; many enough to spread the cost of a numpy call.
+ROW_LIMIT = 1 << 15
+FRAGMENT_LIMIT = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,30 +156,29 @@ class Spans:
 
 @dataclass(frozen=True, eq=False)
 class _HalfPlane:
-    """One edge of each triangle, as a test on the columns of a row; (n,) each.
+    """One edge of each triangle, as a test on the columns of a row; float64 (n,) each.
 
-    With E its edge function, not negative inside, ``value`` is E at the
-    triangle's first column and row less 1 where the edge itself is outside,
-    ``step_y`` its change from row to row and ``step_x`` the size of its change
-    from column to column.  A left edge bounds columns c, counted from the
-    triangle's first, by ``c >= -floor(value / step_x)``; a right edge by
-    ``c < floor(value / step_x) + 1``.  ``not_left`` and ``not_right`` are 0 for
-    an edge that is one, else larger than any quotient.
+    With E its edge function, positive inside, ``value`` is E at the triangle's
+    first column and row, less 1 where the edge itself is outside; ``step_y`` is its
+    change from row to row and ``fall`` its change from column to column, negated.
+    Columns c, counted from the triangle's first, are inside up to value / fall where
+    ``fall`` is positive, a right edge, and from value / fall on where it is negative.
+
+    Within the triangle's box all of it is whole and below 2**46, which doubles hold
+    as it is; and where a quotient of two such numbers is not whole, it is further
+    from the next whole number than the rounding of a double reaches.
     """
 
-    value: Integers
-    step_x: Integers
-    step_y: Integers
-    not_left: Integers
-    not_right: Integers
+    value: Float64
+    step_y: Float64
+    fall: Float64
 
     @classmethod
     def of(cls, triangles: Triangles, begin: int) -> _HalfPlane:
-        grid, dtype = triangles.grid, triangles.x.dtype
-        never = dtype.type(1) << dtype.type(30 if dtype == np.int32 else 60)
+        grid = triangles.grid
         end = (begin + 1) % 3
         x, y = triangles.x, triangles.y
-        direction = np.where(triangles.double_area > 0, 1, -1).astype(dtype)
+        direction = np.sign(triangles.double_area)
         # Clockwise, the inside of the edge has (run)(Y - y) - (fall)(X - x) > 0.
         run = (x[end] - x[begin]) * direction
         fall = (y[end] - y[begin]) * direction
@@ -189,11 +190,9 @@ class _HalfPlane:
         # the box already keep the one and leave out the other, so it bounds nothing.
         level = fall == 0
         return cls(
-            value=np.where(level, 0, value - (fall > 0)),
-            step_x=np.where(level, 1, abs(fall) * grid.unit_x),
-            step_y=np.where(level, 0, run * grid.unit_y),
-            not_left=np.where(fall < 0, 0, never),
-            not_right=np.where(fall > 0, 0, never),
+            value=np.where(level, np.inf, value - (fall > 0)),
+            step_y=(run * grid.unit_y).astype(np.float64),
+            fall=np.where(level, 1.0, fall * grid.unit_x),
         )
 
 
@@ -221,25 +220,25 @@ def _rows(
     triangle = np.repeat(np.arange(begin, end), heights)
     starts = np.cumsum(heights) - heights
     down = np.arange(len(triangle)) - np.repeat(starts, heights)
-    down_narrow = down.astype(triangles.x.dtype)
-    from_left, from_right = None, None
+    first = np.zeros(len(triangle))
+    last = (triangles.right - triangles.left - 1).take(triangle).astype(np.float64)
     for edge in half_planes:
-        value = edge.value.take(triangle)
-        value += edge.step_y.take(triangle) * down_narrow
-        value //= edge.step_x.take(triangle)
-        left, right = value + edge.not_left.take(triangle), value + edge.not_right.take(triangle)
-        from_left = left if from_left is None else np.minimum(from_left, left)
-        from_right = right if from_right is None else np.minimum(from_right, right)
-    assert from_left is not None and from_right is not None
-    box_left = triangles.left.take(triangle)
-    first = np.maximum(-from_left, 0)
-    beyond = np.minimum(from_right, triangles.right.take(triangle) - box_left - 1) + 1
-    length = beyond - first
-    filled = np.flatnonzero(length > 0)
+        bound = edge.step_y.take(triangle)
+        bound *= down
+        bound += edge.value.take(triangle)
+        fall = edge.fall.take(triangle)
+        bound /= fall
+        right = fall > 0
+        np.minimum(last, np.where(right, bound, np.inf), out=last)
+        np.maximum(first, np.where(right, 0.0, bound), out=first)
+    np.ceil(first, out=first)
+    np.floor(last, out=last)
+    last -= first
+    filled = np.flatnonzero(last >= 0)
     triangle = triangle.take(filled)
     return Spans(
         triangle=triangle,
         row=down.take(filled) + triangles.top.take(triangle),
-        first=(box_left + first).take(filled).astype(np.int64),
-        length=length.take(filled).astype(np.int64),
+        first=first.take(filled).astype(np.int64) + triangles.left.take(triangle),
+        length=last.take(filled).astype(np.int64) + 1,
     )

@@ -97,7 +97,8 @@ class DisplayList:
     @property
     def flat(self) -> bool:
         """True when every triangle has one colour: no channel needs interpolating."""
-        return bool((self.color == self.color[:, :1]).all())
+        first, second, third = (self.color[:, vertex] for vertex in range(3))
+        return np.array_equal(first, second) and np.array_equal(first, third)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an ``.npz``: to a temporary name first, then renamed into place."""

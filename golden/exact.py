@@ -8,6 +8,7 @@ rounded half up.  Nothing is approximated, for any display list.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,6 +98,16 @@ class _Plane:
         return result
 
 
+def _floor_quotient(numerator: NDArray[Any], divisor: NDArray[Any]) -> Int64:
+    """floor(numerator / divisor) by doubles, several at once: not negative, divisor below 2**45.
+
+    Exact for numerators below 2**52: a quotient that is not whole is at least 1 / divisor
+    away from the next whole number q, and q * divisor <= 2**52 makes that more than the
+    2**-53 * q by which a double may be off.
+    """
+    return np.asarray((numerator / divisor).astype(np.int64))
+
+
 class _Depth:
     """Depth of every fragment, exact for every triangle."""
 
@@ -108,7 +119,9 @@ class _Depth:
         # One plane will do where D * (depth + 1), which bounds every covered
         # pixel's numerator plus floor(D/2), stays below 2**63.  Tested without overflow.
         limit = np.iinfo(np.int64).max // self._area
-        self.whole = bool((depth.max(axis=1, initial=0) < limit).all())
+        greatest = depth.max(axis=1, initial=0)
+        self.whole = bool((greatest < limit).all())
+        self._doubles = bool((greatest < (1 << 52) // self._area).all())
         if self.whole:
             self._high = _Plane(geometry, depth)
         else:
@@ -125,6 +138,8 @@ class _Depth:
         down = runs.row - triangles.top.take(runs.triangle)
         area = self._area.take(runs.triangle).take(span)
         high = self._high.along(runs, right, down, span, column)
+        if self._doubles:
+            return _floor_quotient(high, area)
         if self.whole:
             high //= area
             return high
@@ -147,18 +162,31 @@ def _colors(
     y: Int64,
 ) -> NDArray[np.uint8]:
     """uint8 (n, 3): the colour of ``triangle`` (a number in ``triangles``) at pixel (x, y)."""
+    primitive = triangles.primitive.take(triangle)
     if shading == "flat":
-        return display_list.color[:, 0].take(triangles.primitive.take(triangle), axis=0)
+        return display_list.color[:, 0].take(primitive, axis=0)
+    grid = triangles.grid
+    x0, x1, x2 = (corner.take(triangle) for corner in triangles.x)
+    y0, y1, y2 = (corner.take(triangle) for corner in triangles.y)
+    across = x * grid.unit_x + grid.unit_x // 2 - x0
+    below = y * grid.unit_y + grid.unit_y // 2 - y0
+    # Twice the areas that the centre makes with two edges: the weights, times the
+    # doubled area, of the second and third vertex.  Below 2**45, and 255 times
+    # that below 2**53, so doubles hold every sum and product as it is.
+    double_area = triangles.double_area.take(triangle).astype(np.float64)
+    second = (across * (y2 - y0) - below * (x2 - x0)).astype(np.float64)
+    third = (below * (x1 - x0) - across * (y1 - y0)).astype(np.float64)
+    first = double_area - second - third
+    # floor(D/2), with the sign of the area that all the rest carries.
+    half = np.trunc(double_area / 2)
+    vertex_color = display_list.color.reshape(-1, 9).take(primitive, axis=0)
     color = np.empty((len(triangle), 3), np.uint8)
-    vertex_color = display_list.color.take(triangles.primitive, axis=0)
-    geometry = _Geometry(triangles)
-    area = geometry.area.take(triangle)
-    right = x - triangles.left.take(triangle)
-    down = y - triangles.top.take(triangle)
     for channel in range(3):
-        # At covered pixels at most 255 * D + D/2 < 2**53.
-        plane = _Plane(geometry, vertex_color[:, :, channel].astype(np.int64))
-        color[:, channel] = plane.at(triangle, right, down) // area
+        numerator = first * vertex_color[:, channel]
+        numerator += vertex_color[:, 3 + channel] * second
+        numerator += vertex_color[:, 6 + channel] * third
+        numerator += half
+        color[:, channel] = _floor_quotient(numerator, double_area)
     return color
 
 
@@ -186,9 +214,9 @@ def draw(
         for runs in rows.chunks(fragment_limit):
             span, column = runs.expand()
             buffer.add(runs, span, column, depth.of(runs, span, column))
-    visible = buffer.visible()
-    color = _colors(display_list, triangles, shading, visible.triangle, visible.x, visible.y)
-    return buffer.picture(display_list, triangles, visible, color)
+    return buffer.picture(
+        display_list, triangles,
+        lambda seen: _colors(display_list, triangles, shading, seen.triangle, seen.x, seen.y))
 
 
 def fragments(
