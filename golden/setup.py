@@ -152,7 +152,7 @@ class PreparedTriangles:
 
 
 @dataclass(frozen=True, eq=False)
-class _Boxes:
+class Boxes:
     """The triangles that have area and a box of pixel centres on the screen."""
 
     primitive: Int64
@@ -163,6 +163,26 @@ class _Boxes:
     right: Int64
     top: Int64
     bottom: Int64
+
+    @property
+    def extent(self) -> Int64:
+        """The greatest x + y within each box, from its corner."""
+        return np.asarray(self.right - 1 - self.left + self.bottom - 1 - self.top)
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """What ``PreparedTriangles`` says of the triangles' places; arrays of n in the same order.
+
+    ``boxes`` has ``primitive``, ``left``, ``right``, ``top`` and ``bottom``.
+    """
+
+    boxes: Boxes
+    middle: Int64
+    long_edge_left: NDArray[np.bool_]
+    long: Edges
+    upper: Edges
+    lower: Edges
 
 
 def _doubled_area(position: Int64) -> Int64:
@@ -177,7 +197,7 @@ def _first_centre(coordinate: Int64, unit: int, limit: int) -> Int64:
     return np.clip(fixed.ceil_divide(coordinate - unit // 2, unit), 0, limit)
 
 
-def _boxes(display_list: DisplayList, grid: Grid) -> _Boxes:
+def _boxes(display_list: DisplayList, grid: Grid) -> Boxes:
     position = display_list.position.astype(np.int64)
     area = _doubled_area(position)
     low, high = position.min(axis=1), position.max(axis=1)
@@ -186,15 +206,14 @@ def _boxes(display_list: DisplayList, grid: Grid) -> _Boxes:
     top = _first_centre(low[:, 1], grid.unit_y, grid.height)
     bottom = _first_centre(high[:, 1], grid.unit_y, grid.height)
     kept = np.flatnonzero((area != 0) & (left < right) & (top < bottom))
-    return _Boxes(kept, position[kept], abs(area[kept]), area[kept] > 0,
+    return Boxes(kept, position[kept], abs(area[kept]), area[kept] > 0,
                   left[kept], right[kept], top[kept], bottom[kept])  # fmt: skip
 
 
 def scene_fraction_bits(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> int:
     """The fewest fraction bits at which every triangle of the list is exact; 0 for none."""
     boxes = _boxes(display_list, Grid.of(display_list, x_shift, y_shift))
-    extent = boxes.right - 1 - boxes.left + boxes.bottom - 1 - boxes.top
-    return int(fixed.exact_fraction_bits(boxes.double_area, extent).max(initial=0))
+    return int(fixed.exact_fraction_bits(boxes.double_area, boxes.extent).max(initial=0))
 
 
 def _edges(begin: Int64, end: Int64, row: Int64, rows: Int64, grid: Grid) -> Edges:
@@ -228,7 +247,7 @@ def _edges(begin: Int64, end: Int64, row: Int64, rows: Int64, grid: Grid) -> Edg
 class _PlaneSolver:
     """Turns three vertex values of each triangle into start and increments."""
 
-    def __init__(self, boxes: _Boxes, grid: Grid, fraction_bits: int) -> None:
+    def __init__(self, boxes: Boxes, grid: Grid, fraction_bits: int) -> None:
         x, y = boxes.position[:, :, 0], boxes.position[:, :, 1]
         sign = np.where(boxes.clockwise, 1, -1)
         self._x1, self._x2 = (sign * (x[:, vertex] - x[:, 0]) for vertex in (1, 2))
@@ -267,6 +286,25 @@ class _PlaneSolver:
         )
 
 
+def outline(display_list: DisplayList, grid: Grid) -> Outlines:
+    """Boxes and edges of every triangle that may cover a pixel centre of ``grid``."""
+    boxes = _boxes(display_list, grid)
+    order = np.argsort(boxes.position[:, :, 1], axis=1, kind="stable")
+    by_height = np.take_along_axis(boxes.position, order[:, :, None], axis=1)
+    upper_vertex, middle_vertex, lower_vertex = (by_height[:, vertex] for vertex in range(3))
+    middle = _first_centre(middle_vertex[:, 1], grid.unit_y, grid.height)
+    top, bottom = boxes.top, boxes.bottom
+    return Outlines(
+        boxes=boxes,
+        middle=middle,
+        # The middle vertex lies right of the long edge: the turn is clockwise.
+        long_edge_left=_doubled_area(by_height) > 0,
+        long=_edges(upper_vertex, lower_vertex, top, bottom - top, grid),
+        upper=_edges(upper_vertex, middle_vertex, top, middle - top, grid),
+        lower=_edges(middle_vertex, lower_vertex, middle, bottom - middle, grid),
+    )
+
+
 def prepare(
     display_list: DisplayList,
     *,
@@ -282,12 +320,8 @@ def prepare(
     """
     fixed.check_fraction_bits(fraction_bits)
     grid = Grid.of(display_list, x_shift, y_shift)
-    boxes = _boxes(display_list, grid)
-    order = np.argsort(boxes.position[:, :, 1], axis=1, kind="stable")
-    by_height = np.take_along_axis(boxes.position, order[:, :, None], axis=1)
-    upper_vertex, middle_vertex, lower_vertex = (by_height[:, vertex] for vertex in range(3))
-    middle = _first_centre(middle_vertex[:, 1], grid.unit_y, grid.height)
-    top, bottom = boxes.top, boxes.bottom
+    outlines = outline(display_list, grid)
+    boxes = outlines.boxes
 
     solver = _PlaneSolver(boxes, grid, fraction_bits)
     # Wide enough for every machine: one that lost memory units draws fewer pixels
@@ -308,16 +342,15 @@ def prepare(
         flat_color = vertex_color[:, 0]
     return PreparedTriangles(
         primitive=boxes.primitive.astype(np.int32),
-        top=top,
-        middle=middle,
-        bottom=bottom,
+        top=boxes.top,
+        middle=outlines.middle,
+        bottom=boxes.bottom,
         left=boxes.left,
         right=boxes.right,
-        # The middle vertex lies right of the long edge: the turn is clockwise.
-        long_edge_left=_doubled_area(by_height) > 0,
-        long=_edges(upper_vertex, lower_vertex, top, bottom - top, grid),
-        upper=_edges(upper_vertex, middle_vertex, top, middle - top, grid),
-        lower=_edges(middle_vertex, lower_vertex, middle, bottom - middle, grid),
+        long_edge_left=outlines.long_edge_left,
+        long=outlines.long,
+        upper=outlines.upper,
+        lower=outlines.lower,
         depth=solver.solve(display_list.depth[boxes.primitive], word_bits),
         color=color,
         flat_color=flat_color,

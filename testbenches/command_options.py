@@ -10,6 +10,7 @@ import click
 
 from ..golden.configuration import MAXIMUM_WORDS, PRESETS
 from ..golden.fixed import MAX_FRACTION_BITS
+from ..golden.plan import MAXIMUM_ERROR
 from ..golden.ranges import MAXIMUM_SIZE
 
 
@@ -57,6 +58,9 @@ _MACHINE_OPTIONS = (
     click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
                  help="Fraction bits of depth and colour; exact takes what the scene needs.  "
                  "[default: exact]"),
+    click.option("--max-error", type=click.IntRange(0, MAXIMUM_ERROR), metavar="LSB",
+                 help="In place of fraction bits: the fewest at which no depth is more than that "
+                 "off; 0 is exact."),
     click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
                  show_default=True, help="Colour interpolators in the machine, or not; auto has "
                  "them where the scene needs them."),

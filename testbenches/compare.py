@@ -11,6 +11,7 @@ from ..golden import bit_true, exact
 from ..golden.configuration import MachineConfiguration
 from ..golden.display_list import DisplayList
 from ..golden.picture import Picture
+from ..golden.scene_needs import fitted
 from ..golden.setup import scene_fraction_bits
 from .simulation import Simulation, expected_video
 
@@ -102,10 +103,11 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     interlace = configuration.interlace
     shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
     reference = exact.draw(display_list, shading=configuration.shading, **shifts)
-    needed = scene_fraction_bits(display_list, **shifts)
+    listed = fitted(configuration, display_list)
+    needed = scene_fraction_bits(listed, **shifts)
     golden = reference
     if configuration.fraction_bits < needed:
-        golden = bit_true.draw(display_list, fraction_bits=configuration.fraction_bits,
+        golden = bit_true.draw(listed, fraction_bits=configuration.fraction_bits,
                                shading=configuration.shading, **shifts)
     expected = expected_video(configuration, golden.color)
     depth_orphans = simulation.depth < 0

@@ -117,12 +117,14 @@ def _translated(configuration: MachineConfiguration, component: str | None) -> t
 def _precision(configuration: MachineConfiguration, options: MachineOptions,
                scene: str | Path | None) -> str:
     bits = configuration.fraction_bits
+    subject = ("every triangle whose vertices are on the screen" if scene is None else
+               _scene_name(scene))
+    if options.max_error:
+        return f"{bits}, at most {options.max_error} LSB of depth off for {subject}"
     if options.machine().get("fraction_bits", "exact") != "exact":
         source = "asked for" if options.fraction_bits is not None else "the preset's"
         return f"{bits}, {source}"
-    if scene is None:
-        return f"{bits}, exact for every triangle whose vertices are on the screen"
-    return f"{bits}, exact for {_scene_name(scene)}"
+    return f"{bits}, exact for {subject}"
 
 
 def _scene_name(scene: str | Path) -> str:

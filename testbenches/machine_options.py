@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from ..golden.configuration import PRESETS, MachineConfiguration, configure
+from ..golden.configuration import PRESETS, MachineConfiguration
 from ..golden.errors import InputError
-from ..golden.fixed import MAX_FRACTION_BITS, exact_fraction_bits
+from ..golden.plan import Plan, check_max_error, full_machine, plan
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
 from ..golden.scenes.registry import DisplayListScene, parse_scene
 
@@ -27,6 +27,7 @@ class MachineOptions:
     ``cards``             card order, such as ``4x(PMM)``
     ``size``              width, height of the highest resolution
     ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs
+    ``max_error``         in place of fraction bits: LSB by which a depth may be off
     ``shading``           ``auto`` interpolates colours where the scene has more than one a triangle
     ``words``             of each memory unit
     ``clocks_per_pixel``  clocks a pixel lasts on the video output
@@ -36,6 +37,7 @@ class MachineOptions:
     cards: str | None = None
     size: tuple[int, int] | None = None
     fraction_bits: int | Literal["exact"] | None = None
+    max_error: int | None = None
     shading: ShadingChoice = "auto"
     words: int | None = None
     clocks_per_pixel: int | None = None
@@ -48,6 +50,12 @@ class MachineOptions:
         for name in ("cards", "words", "clocks_per_pixel", "fraction_bits"):
             if getattr(self, name) is not None:
                 fields[name] = getattr(self, name)
+        if self.max_error is not None:
+            check_max_error(self.max_error)
+            if self.fraction_bits is not None:
+                raise InputError("--max-error: chooses the fraction bits itself; leave out "
+                                 "--fraction-bits")
+            fields["fraction_bits"] = "exact"  # so the preset's are not meant
         if self.shading != "auto":
             fields["shading"] = self.shading
         if self.size is not None:
@@ -55,9 +63,8 @@ class MachineOptions:
         return fields
 
 
-def machine_for_scene(scene: str | Path, options: MachineOptions
-                      ) -> tuple[SceneDisplayList, MachineConfiguration]:
-    """Load a scene and choose its machine.  Raises ``InputError`` for whatever cannot be used."""
+def plan_for_scene(scene: str | Path, options: MachineOptions) -> tuple[SceneDisplayList, Plan]:
+    """Load a scene and plan its machine.  Raises ``InputError`` for whatever cannot be used."""
     fields = options.machine()
     width, height = fields.pop("width", None), fields.pop("height", None)
     if isinstance(parse_scene(scene), DisplayListScene) and options.size is None:
@@ -65,28 +72,25 @@ def machine_for_scene(scene: str | Path, options: MachineOptions
     listed = make_display_list(scene, width=width, height=height,
                                shading="flat" if options.shading == "flat" else "gouraud")
     bits = fields.pop("fraction_bits", "exact")
-    return listed, configure(listed.display_list, fraction_bits=None if bits == "exact" else bits,
-                             **fields)
+    return listed, plan(listed.display_list, max_error=options.max_error or 0,
+                        fraction_bits=None if bits == "exact" else bits, **fields)
+
+
+def machine_for_scene(scene: str | Path, options: MachineOptions
+                      ) -> tuple[SceneDisplayList, MachineConfiguration]:
+    """As ``plan_for_scene``, without the reasons."""
+    listed, planned = plan_for_scene(scene, options)
+    return listed, planned.configuration
 
 
 def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
-    """The machine for any scene of that size: exact for every triangle on the screen, unless the
-    options or the preset give the fraction bits.  Raises ``InputError``."""
+    """The machine for any scene of that size: exact for every triangle on the screen, or as exact
+    as asked for, unless the options or the preset give the fraction bits.  Raises ``InputError``.
+    """
     fields = DEFAULT_SIZE | options.machine()
     if fields.get("fraction_bits", "exact") != "exact":
         return MachineConfiguration(**fields)
-    machine = MachineConfiguration(**fields | {"fraction_bits": 0})
-    bits = on_screen_fraction_bits(machine.width, machine.height, machine.sub_bits)
-    return replace(machine, fraction_bits=min(bits, MAX_FRACTION_BITS))
-
-
-def on_screen_fraction_bits(width: int, height: int, sub_bits: int) -> int:
-    """Fraction bits at which every triangle with all its vertices on the screen is exact.
-
-    None has more area than half the screen, or covers more columns and rows.
-    """
-    double_area = (width << sub_bits) * (height << sub_bits)
-    return exact_fraction_bits(double_area, width + height - 2)
+    return full_machine(max_error=options.max_error or 0, **fields)
 
 
 def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:

@@ -104,6 +104,7 @@ def _display_list_facts(rendering: Rendering) -> dict[str, Any]:
     covered = int((complexity > 0).sum())
     return {
         "coordinate_bits": listed.coordinate_bits,
+        "sub_bits": listed.sub_bits,
         "colors": "one colour a triangle" if listed.flat else "a colour at each vertex",
         "background": listed.background,
         "covered": covered,

@@ -15,6 +15,7 @@ from ..golden.commands import Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
 from ..golden.display_list import DisplayList
 from ..golden.interlace import Interlace
+from ..golden.scene_needs import fitted
 from ..golden.setup import prepare
 from .engine import Engine, EngineRun, Job, Progress, Scan
 
@@ -69,11 +70,12 @@ class Simulation:
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList) -> list[int]:
     """Frame start, prepared triangles, frame end.
 
-    The host does the triangle set-up here, at the resolution the machine reports.
+    The host does the triangle set-up here, at the resolution the machine reports.  Raises
+    ``InputError`` for a list that is too wide for the machine.
     """
     interlace = configuration.interlace
-    prepared = prepare(display_list, fraction_bits=configuration.fraction_bits,
-                       shading=configuration.shading,
+    prepared = prepare(fitted(configuration, display_list),
+                       fraction_bits=configuration.fraction_bits, shading=configuration.shading,
                        x_shift=interlace.x_shift, y_shift=interlace.y_shift)
     return [commands.frame_start(display_list.background),
             *commands.prepared_triangles(configuration, prepared),

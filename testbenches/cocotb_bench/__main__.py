@@ -9,6 +9,7 @@ import click
 from ...golden.configuration import MachineConfiguration
 from ...golden.display_list import DisplayList
 from ...golden.errors import InputError
+from ...golden.scene_needs import fitted
 from ..command_group import EXIT_DIFFERENT, EXIT_WRONG_INPUT
 from ..compare import Comparison, compare
 from ..interruption import Interrupted, interruptible
@@ -88,11 +89,7 @@ def _text(verilog: Path) -> str:
 
 def _check_match(machine: MachineConfiguration, listed: DisplayList) -> None:
     """``InputError`` where the machine is built for other display lists."""
-    for field in ("width", "height", "sub_bits", "depth_bits"):
-        built, needed = getattr(machine, field), getattr(listed, field)
-        if built != needed:
-            raise InputError(f"display list: {field} {needed}, the machine is built for {built}: "
-                             "export a machine for this list")
+    fitted(machine, listed)
     if machine.shading == "flat" and not listed.flat:
         raise InputError("display list: its triangles have more than one colour, the machine is "
                          "built for flat ones: export a machine for this list")

@@ -13,10 +13,10 @@ import pytest
 from click.testing import CliRunner
 
 from cardcage.golden.configuration import preset
+from cardcage.golden.plan import on_screen_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.setup import scene_fraction_bits
 from cardcage.testbenches.cli import main
-from cardcage.testbenches.machine_options import on_screen_fraction_bits
 
 SCENE = "random:n=12,size=8,seed=5"
 TINY = ["--cards", "PM", "--size", "16x16"]

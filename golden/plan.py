@@ -1,0 +1,218 @@
+"""The smallest machine for a display list, and the reason for each of its numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from . import bit_true
+from .commands import layout_bits, prepared_triangle_layout
+from .configuration import CHANNEL_BITS, MachineConfiguration
+from .display_list import DisplayList
+from .errors import InputError
+from .fixed import MAX_FRACTION_BITS, exact_fraction_bits, guard_bits
+from .ranges import check_whole
+from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
+
+#: What a processing element holds in waiting where there is enough to hold.
+FIFO_DEPTH = MachineConfiguration.fifo_depth
+
+#: Depths have at most 32 bits: no error is greater.
+MAXIMUM_ERROR = (1 << 32) - 1
+
+
+@dataclass(frozen=True)
+class PlanLine:
+    """One number of the machine.
+
+    ``item``    what it is
+    ``value``   in the planned machine
+    ``full``    in the machine for every triangle on a screen of that size
+    ``reason``  what of the scene decides it
+    ``saves``   bits of each triangle broadcast that this alone saves; negative where the
+                scene needs more, None where it does not touch them
+    """
+
+    item: str
+    value: str
+    full: str
+    reason: str
+    saves: int | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """``configuration`` is the machine, ``full`` the one for every triangle on the screen;
+    ``lines`` explain the difference, ``needs`` has the numbers behind them."""
+
+    configuration: MachineConfiguration
+    full: MachineConfiguration
+    needs: SceneNeeds
+    lines: tuple[PlanLine, ...]
+
+
+def error_fraction_bits(extent: int, max_error: int) -> int:
+    """The fewest fraction bits at which no stored value is more than ``max_error``, at least 1,
+    off, for triangles of that ``extent``: the error before the floor is at most that."""
+    bits = 0
+    while bit_true.error_bound(bits, extent) > max_error:
+        bits += 1
+    return bits
+
+
+def on_screen_fraction_bits(width: int, height: int, sub_bits: int, max_error: int = 0) -> int:
+    """Fraction bits at which every triangle with all its vertices on the screen is exact, or its
+    depths at most ``max_error`` off.
+
+    None has more area than half the screen, or covers more columns and rows.
+    """
+    extent = width + height - 2
+    bits = exact_fraction_bits((width << sub_bits) * (height << sub_bits), extent)
+    return min(bits, MAX_FRACTION_BITS, error_fraction_bits(extent, max_error)
+               if max_error else MAX_FRACTION_BITS)
+
+
+def full_machine(*, max_error: int = 0, **fields: Any) -> MachineConfiguration:
+    """The machine for every triangle on the screen; ``fields`` are those of the configuration
+    but for the fraction bits.  Raises ``InputError``."""
+    check_max_error(max_error)
+    machine = MachineConfiguration(**fields | {"fraction_bits": 0})
+    return replace(machine, fraction_bits=on_screen_fraction_bits(
+        machine.width, machine.height, machine.sub_bits, max_error))
+
+
+def check_max_error(max_error: int) -> None:
+    """Raise ``InputError`` unless it is a number of depth LSB."""
+    check_whole("max error", max_error, 0, MAXIMUM_ERROR)
+
+
+def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
+         fraction_bits: int | None = None, **rest: Any) -> Plan:
+    """The machine that draws ``display_list`` with the least hardware, on these cards.
+
+    ``max_error``      LSB by which a depth may be off; 0 is exact
+    ``fraction_bits``  None: the fewest for ``max_error``
+    ``rest``           further fields of ``MachineConfiguration``, which are then not planned
+
+    Coverage is exact in any case.  The picture is the one that the machine for the
+    whole screen draws; the stored depth keeps the list's ``depth_bits``, since the
+    background's depth is part of the picture.  Planned is for the resolution that the
+    memory holds.  Raises ``InputError``.
+    """
+    check_max_error(max_error)
+    if fraction_bits is not None and max_error:
+        raise InputError("max error: the fraction bits are given as well; leave one of them out")
+    listed = with_sub_bits(display_list, fewest_sub_bits(display_list))
+    size: dict[str, Any] = {"cards": cards, "width": listed.width, "height": listed.height,
+            "depth_bits": listed.depth_bits}
+    rest = {"shading": "flat" if listed.flat else "gouraud"} | rest
+    machine = MachineConfiguration(**size | {"fraction_bits": fraction_bits or 0,
+                                             "sub_bits": listed.sub_bits} | rest)
+    interlace = machine.interlace
+    needs = scene_needs(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    if fraction_bits is None:
+        fraction_bits = needs.exact_fraction_bits
+        if max_error:
+            fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
+    planned = replace(machine, **{
+        "fraction_bits": fraction_bits,
+        "coordinate_bits": needs.coordinate_bits,
+        "edge_column_bits": needs.edge_column_bits,
+        "edge_remainder_bits": needs.edge_remainder_bits,
+        "depth_range_bits": needs.depth_range_bits,
+        "triangle_extent": needs.extent,
+        # Behind the clear of the frame's start all of them can wait.
+        "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
+    } | {name: value for name, value in rest.items() if name != "shading"})
+    full = full_machine(max_error=max_error, **size | {
+        "sub_bits": display_list.sub_bits, "words": planned.words,
+        "clocks_per_pixel": planned.clocks_per_pixel, "timing": planned.timing,
+        "maximum_units": planned.maximum_units, "allow_orphans": planned.allow_orphans})
+    return Plan(planned, full, needs, tuple(_lines(planned, full, needs, max_error)))
+
+
+def triangle_bits(configuration: MachineConfiguration) -> int:
+    """Bits of a triangle as it is broadcast, waits in a FIFO and is held while it is drawn."""
+    return layout_bits(prepared_triangle_layout(configuration))
+
+
+def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: SceneNeeds,
+           max_error: int) -> list[PlanLine]:
+    unit = 1 << planned.sub_bits
+
+    def bits(item: str, name: str, reason: str, **also: Any) -> PlanLine:
+        """A width of the configuration; ``also`` changes with it."""
+        value, before = getattr(planned, name), getattr(full, name)
+        changed = replace(full, **{name: value} | also)
+        return PlanLine(item, str(value), str(before), reason,
+                        triangle_bits(full) - triangle_bits(changed))
+
+    low, high = (f"{coordinate / unit:g}" for coordinate in needs.coordinates)
+    drops = full.sub_bits - planned.sub_bits
+    return [
+        bits("sub-pixel bits", "sub_bits",
+             f"every coordinate is a multiple of {1 << drops}/{unit << drops} pixel" if drops else
+             f"some coordinate is an odd multiple of 1/{unit} pixel" if planned.sub_bits > 1 else
+             "pixel centres need one",
+             coordinate_bits=0, edge_column_bits=0, edge_remainder_bits=0),
+        bits("coordinate bits", "coordinate_bits", f"vertices lie from {low} to {high} pixels"),
+        bits("edge column bits", "edge_column_bits",
+             "edges cross columns {} to {}".format(*needs.columns)),
+        bits("edge remainder bits", "edge_remainder_bits",
+             f"the highest edge is {needs.edge_height:,}/{unit} pixel high"),
+        _stored_depth(planned, needs),
+        bits("depth range bits", "depth_range_bits",
+             f"the farthest vertex has depth {needs.greatest_depth:,}"),
+        bits("fraction bits", "fraction_bits", _precision(planned, needs, max_error)),
+        _guards(planned, full, needs),
+        _interpolants(planned, full, needs),
+        PlanLine("lines", "none", "none", "the scene has triangles only: no line stepper"),
+        PlanLine("words a memory unit", f"{planned.words:,}", f"{full.words:,}",
+                 f"{planned.interlace.width}x{planned.interlace.height} pixels over "
+                 f"{planned.units} units"),
+        PlanLine("FIFO depth", str(planned.fifo_depth), str(full.fifo_depth),
+                 f"{needs.drawn:,} of {needs.triangles:,} triangles may cover a pixel"),
+    ]
+
+
+def _stored_depth(planned: MachineConfiguration, needs: SceneNeeds) -> PlanLine:
+    fits = needs.depth_range_bits
+    reason = f"the picture's format: its background lies at depth {planned.depth_background:,}"
+    if fits < planned.depth_bits:
+        reason += f"; {fits} would hold the vertices"
+    return PlanLine("stored depth bits", str(planned.depth_bits), str(planned.depth_bits), reason)
+
+
+def _precision(planned: MachineConfiguration, needs: SceneNeeds, max_error: int) -> str:
+    bits = planned.fraction_bits
+    if bits == needs.exact_fraction_bits:
+        return (f"exact: a triangle of doubled area {needs.exact_double_area:,} sub-pixels reaches "
+                f"{needs.exact_extent} pixels, right and down")
+    error = float(bit_true.error_bound(bits, needs.extent))
+    source = f"at most {max_error:,} LSB asked for" if max_error else "asked for"
+    return (f"{source}: a triangle reaches {needs.extent} pixels, right and down, and then errs by "
+            f"up to {error:.3g}; exact from {needs.exact_fraction_bits}")
+
+
+def _guards(planned: MachineConfiguration, full: MachineConfiguration,
+            needs: SceneNeeds) -> PlanLine:
+    def guards(machine: MachineConfiguration) -> str:
+        widths = [machine.depth_range_bits] + [CHANNEL_BITS] * (machine.shading != "flat")
+        return " and ".join(str(guard_bits(width, machine.fraction_bits, machine.triangle_extent))
+                            for width in widths)
+
+    return PlanLine("guard bits", guards(planned), guards(full),
+                    f"the largest triangle reaches {needs.extent} pixels, right and down; the "
+                    f"widest has {needs.widest} columns, the tallest {needs.tallest} rows")
+
+
+def _interpolants(planned: MachineConfiguration, full: MachineConfiguration,
+                  needs: SceneNeeds) -> PlanLine:
+    named = {"flat": "depth", "gouraud": "depth, red, green, blue"}
+    if planned.shading == "flat":
+        reason = ("every triangle has one colour" if needs.flat else
+                  "flat shading asked for") + ": no colour interpolator"
+    else:
+        reason = "some triangle has more than one colour" if not needs.flat else "asked for"
+    saves = triangle_bits(full) - triangle_bits(replace(full, shading=planned.shading))
+    return PlanLine("interpolants", named[planned.shading], named[full.shading], reason, saves)

@@ -1,0 +1,193 @@
+"""What a display list asks of a machine: the fewest bits of every word, and why.
+
+Every width is one at which the picture is the same as on a machine for all the
+guard band: words that are summed modulo a power of two need only hold the values
+that count, which are those on an edge's own rows and at covered pixels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .configuration import MachineConfiguration
+from .display_list import DisplayList
+from .errors import InputError
+from .fixed import exact_fraction_bits
+from .grid import Grid
+from .setup import COLOR_BITS, Edges, Outlines, carried_word_bits, outline
+
+Int64 = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SceneNeeds:
+    """The numbers of a display list that decide how wide a machine must be.
+
+    ``triangles``            in the list
+    ``drawn``                those that may cover a pixel centre; all that follows is about them,
+                             but for ``coordinates``
+    ``flat``                 each triangle has one colour
+    ``sub_bits``             the list's own
+    ``coordinates``          least and greatest vertex coordinate, in sub-pixel units
+    ``columns``              least and greatest column on a row of an edge
+    ``edge_height``          of the highest edge, in sub-pixel units
+    ``greatest_depth``       of a vertex
+    ``extent``               the largest triangle's, right and down together, in pixels
+    ``widest``, ``tallest``  columns and rows of the widest and of the tallest box
+    ``exact_fraction_bits``  at which every triangle is exact, because of the one with
+    ``exact_double_area``    this doubled area in square sub-pixel units, and
+    ``exact_extent``         this extent
+    """
+
+    triangles: int
+    drawn: int
+    flat: bool
+    sub_bits: int
+    coordinates: tuple[int, int]
+    columns: tuple[int, int]
+    edge_height: int
+    greatest_depth: int
+    extent: int
+    widest: int
+    tallest: int
+    exact_fraction_bits: int
+    exact_double_area: int
+    exact_extent: int
+
+    @property
+    def coordinate_bits(self) -> int:
+        return _signed_bits(*self.coordinates)
+
+    @property
+    def edge_column_bits(self) -> int:
+        return _signed_bits(*self.columns)
+
+    @property
+    def edge_remainder_bits(self) -> int:
+        return max(1, self.edge_height.bit_length())
+
+    @property
+    def depth_range_bits(self) -> int:
+        return max(1, self.greatest_depth.bit_length())
+
+    def depth_plane_bits(self, fraction_bits: int) -> int:
+        return carried_word_bits(self.depth_range_bits, fraction_bits, self.extent)
+
+    def channel_plane_bits(self, fraction_bits: int) -> int:
+        return carried_word_bits(COLOR_BITS, fraction_bits, self.extent)
+
+
+def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:
+    """The needs of ``display_list`` at the resolution ``Grid.of`` gives."""
+    outlines = outline(display_list, Grid.of(display_list, x_shift, y_shift))
+    boxes = outlines.boxes
+    extent = boxes.extent
+    # Below 2**44 * 2**13.
+    product = boxes.double_area * (1 + extent)
+    decisive = int(product.argmax()) if len(product) else None
+    area, reach = ((0, 0) if decisive is None else
+                   (int(boxes.double_area[decisive]), int(extent[decisive])))
+    position = display_list.position
+    return SceneNeeds(
+        triangles=display_list.triangles,
+        drawn=len(product),
+        flat=display_list.flat,
+        sub_bits=display_list.sub_bits,
+        coordinates=_ends(position),
+        columns=_columns(outlines),
+        edge_height=max(int(edges.denominator.max(initial=1))
+                        for edges in (outlines.long, outlines.upper, outlines.lower)),
+        greatest_depth=int(display_list.depth[boxes.primitive].max(initial=0)),
+        extent=int(extent.max(initial=0)),
+        widest=int((boxes.right - boxes.left).max(initial=0)),
+        tallest=int((boxes.bottom - boxes.top).max(initial=0)),
+        exact_fraction_bits=0 if decisive is None else exact_fraction_bits(area, reach),
+        exact_double_area=area,
+        exact_extent=reach,
+    )
+
+
+def _columns(outlines: Outlines) -> tuple[int, int]:
+    """The least and the greatest column of an edge on its rows: each lies on a first or last."""
+    boxes, middle = outlines.boxes, outlines.middle
+    ends: list[Int64] = []
+    for edges, rows in ((outlines.long, boxes.bottom - boxes.top),
+                        (outlines.upper, middle - boxes.top),
+                        (outlines.lower, boxes.bottom - middle)):  # fmt: skip
+        used = rows > 0
+        ends += [edges.column[used], _last_column(edges, rows - 1)[used]]
+    return _ends(np.concatenate(ends))
+
+
+def _ends(values: NDArray[Any]) -> tuple[int, int]:
+    return (int(values.min()), int(values.max())) if values.size else (0, 0)
+
+
+def _last_column(edges: Edges, steps: Int64) -> Int64:
+    # Both products below 2**37: a step is at most the guard band, the steps at most the screen.
+    remainder = edges.remainder + edges.remainder_step * steps
+    return np.asarray(edges.column + edges.column_step * steps + remainder // edges.denominator)
+
+
+def _signed_bits(low: int, high: int) -> int:
+    """The width of a two's complement number that holds ``low`` … ``high``."""
+    return 1 + max((-1 - low).bit_length() if low < 0 else 0, high.bit_length())
+
+
+def fewest_sub_bits(display_list: DisplayList) -> int:
+    """Sub-pixel bits that are left, at least one, when all coordinates are halved while even."""
+    together = int(np.bitwise_or.reduce(display_list.position, axis=None, initial=0))
+    zeros = (together & -together).bit_length() - 1 if together else display_list.sub_bits
+    return display_list.sub_bits - min(zeros, display_list.sub_bits - 1)
+
+
+def with_sub_bits(display_list: DisplayList, sub_bits: int) -> DisplayList:
+    """The same triangles in units of ``2**-sub_bits`` pixel.
+
+    Its exact picture is the same.  ``InputError`` where a vertex would move.
+    """
+    more = sub_bits - display_list.sub_bits
+    if more == 0:
+        return display_list
+    if sub_bits < (needed := fewest_sub_bits(display_list)):
+        raise InputError(f"display list: sub_bits {needed}, the machine is built for {sub_bits}: "
+                         "export a machine for this list")
+    position = display_list.position << more if more > 0 else display_list.position >> -more
+    return replace(display_list, position=position, sub_bits=sub_bits)
+
+
+def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> DisplayList:
+    """``display_list`` in the formats of a machine, for ``setup.prepare`` and ``bit_true.draw``.
+
+    Raises ``InputError``, naming the field and both numbers, for a list whose picture that
+    machine could not draw: other sizes or depths, or words too narrow for a triangle.  Fewer
+    fraction bits than the list needs are no error: they are what makes a picture approximate.
+    """
+    def refuse(field: str, needed: int, built: int) -> InputError:
+        return InputError(f"display list: {field} {needed}, the machine is built for {built}: "
+                          "export a machine for this list")
+
+    for field in ("width", "height", "depth_bits"):
+        needed, built = getattr(display_list, field), getattr(configuration, field)
+        if needed != built:
+            raise refuse(field, needed, built)
+    display_list = with_sub_bits(display_list, configuration.sub_bits)
+    interlace = configuration.interlace
+    needs = scene_needs(display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    bits = configuration.fraction_bits
+    for field, needed in (
+        ("coordinate_bits", needs.coordinate_bits),
+        ("edge_column_bits", needs.edge_column_bits),
+        ("edge_remainder_bits", needs.edge_remainder_bits),
+        ("depth_plane_bits", needs.depth_plane_bits(bits)),
+        ("channel_plane_bits", needs.channel_plane_bits(bits)),
+    ):
+        if field == "channel_plane_bits" and configuration.shading == "flat":
+            continue
+        if needed > (built := getattr(configuration, field)):
+            raise refuse(field, needed, built)
+    return display_list
