@@ -1,4 +1,4 @@
-"""The error bound is never exceeded and nearly reached, at real sizes, by triangles searched for."""
+"""The error bound is nearly reached at real sizes, and not exceeded, by triangles searched for."""
 
 from fractions import Fraction
 from math import ceil
