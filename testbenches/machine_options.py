@@ -10,7 +10,7 @@ from ..golden.configuration import PRESETS, MachineConfiguration
 from ..golden.errors import InputError
 from ..golden.plan import Plan, check_max_error, full_machine, plan
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
-from ..golden.scenes.registry import DisplayListScene, parse_scene
+from ..golden.scenes.registry import DisplayListScene, HardCaseScene, parse_scene
 
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
@@ -67,8 +67,8 @@ def plan_for_scene(scene: str | Path, options: MachineOptions) -> tuple[SceneDis
     """Load a scene and plan its machine.  Raises ``InputError`` for whatever cannot be used."""
     fields = options.machine()
     width, height = fields.pop("width", None), fields.pop("height", None)
-    if isinstance(parse_scene(scene), DisplayListScene) and options.size is None:
-        width = height = None  # a saved list has its own size, whatever the preset's
+    if isinstance(parse_scene(scene), DisplayListScene | HardCaseScene) and options.size is None:
+        width = height = None  # a display list has its own size, whatever the preset's
     listed = make_display_list(scene, width=width, height=height,
                                shading="flat" if options.shading == "flat" else "gouraud")
     bits = fields.pop("fraction_bits", "exact")

@@ -19,6 +19,7 @@ from .tetra import tetra, tetra_triangles
 
 DISPLAY_LIST_EXTENSION: Final = ".npz"
 DESCRIPTION_EXTENSION: Final = ".scene"
+HARD_CASE: Final = "hard"
 
 #: More would take minutes and gigabytes before the first pixel.
 TRIANGLE_LIMIT: Final = 4_000_000
@@ -107,7 +108,18 @@ class DisplayListScene:
         return self.path.name
 
 
-Scene = BuiltInScene | MeshFileScene | DisplayListScene
+@dataclass(frozen=True)
+class HardCaseScene:
+    """A case of the hard-case catalogue, not yet looked up: a display list with its own size."""
+
+    case: str
+
+    @property
+    def name(self) -> str:
+        return f"{HARD_CASE}:{self.case}"
+
+
+Scene = BuiltInScene | MeshFileScene | DisplayListScene | HardCaseScene
 
 
 @dataclass(frozen=True)
@@ -192,11 +204,14 @@ def parse_scene(scene: str | Path) -> Scene:
     """What a scene argument means; no file is opened.
 
     A ``Path``, a known file extension or the name of an existing file means that
-    file: a mesh, or a display list (``.npz``).  Anything else is the name of a
-    built-in, with arguments if need be: ``sphereflake:depth=3,tessellation=1``.
+    file: a mesh, or a display list (``.npz``).  ``hard:NAME`` is a hard case.  Anything
+    else is the name of a built-in, with arguments if need be:
+    ``sphereflake:depth=3,tessellation=1``.
 
     Raises ``InputError``, with the nearest name for one that is unknown.
     """
+    if isinstance(scene, str) and scene.startswith(f"{HARD_CASE}:"):
+        return HardCaseScene(scene.removeprefix(f"{HARD_CASE}:").strip())
     path = Path(scene)
     suffix = path.suffix.lower()
     if suffix == DESCRIPTION_EXTENSION:

@@ -1,0 +1,99 @@
+"""The picture contract once more, in fractions, one pixel at a time.
+
+Nothing here is shared with ``coverage``, ``exact`` or ``setup``: plain loops,
+Python integers and ``Fraction``, slow and easy to believe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from math import floor
+
+from ..display_list import DisplayList
+
+Point = tuple[int, int]
+Color = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Pixel:
+    """What is seen at a pixel: the winner, its depth and its Gouraud colour."""
+
+    primitive: int
+    depth: int
+    color: Color
+
+
+def rational_picture(display_list: DisplayList, sample: int = 1) -> dict[Point, Pixel]:
+    """The pixels (x, y) on which something is drawn, among every ``sample``-th in raster order.
+
+    The winner is the least (depth, primitive number).
+    """
+    positions = display_list.position.tolist()
+    depths = display_list.depth.tolist()
+    nearest: dict[Point, tuple[int, int, list[int]]] = {}
+    for primitive, (corners, depth) in enumerate(zip(positions, depths, strict=True)):
+        for pixel, weights in covered(corners, display_list, sample):
+            here = round_half_up(mean(depth, weights))
+            if pixel not in nearest or (here, primitive) < nearest[pixel][:2]:
+                nearest[pixel] = here, primitive, weights
+    picture = {}
+    for pixel, (here, primitive, weights) in nearest.items():
+        red, green, blue = (round_half_up(mean(channel, weights))
+                            for channel in display_list.color[primitive].T.tolist())
+        picture[pixel] = Pixel(primitive, here, (red, green, blue))
+    return picture
+
+
+def covered(
+    corners: list[list[int]], display_list: DisplayList, sample: int = 1
+) -> Iterator[tuple[Point, list[int]]]:
+    """The pixels whose centres a triangle covers, with the weight of each vertex there.
+
+    The weights are barycentric, times the doubled area, which is their sum.
+    Where one is 0 the centre is on the opposite edge, which belongs to the
+    triangle if it is a left one (the inside lies to its right) or a top one
+    (level, the inside below).
+    """
+    unit = 1 << display_list.sub_bits
+    doubled = area(*corners)
+    if doubled == 0:
+        return
+    xs, ys = zip(*corners, strict=True)
+    for y in range(max(0, min(ys) // unit), min(display_list.height, max(ys) // unit + 1)):
+        for x in range(max(0, min(xs) // unit), min(display_list.width, max(xs) // unit + 1)):
+            if (y * display_list.width + x) % sample:
+                continue
+            centre = [x * unit + unit // 2, y * unit + unit // 2]
+            weights = []
+            for opposite in range(3):
+                begin, end = corners[opposite - 2], corners[opposite - 1]
+                part = area(begin, end, centre)
+                if part * doubled < 0 or (part == 0 and not top_left(begin, end, doubled)):
+                    break
+                weights.append(part)
+            else:
+                yield (x, y), weights
+
+
+def area(a: list[int], b: list[int], c: list[int]) -> int:
+    """Twice the area of a triangle, positive where it runs clockwise as seen (y downwards)."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+
+
+def top_left(begin: list[int], end: list[int], doubled: int) -> bool:
+    """Whether an edge of a triangle of that doubled area is a left or a top one."""
+    if doubled < 0:  # as if it ran clockwise: then left edges go up and top edges rightwards
+        begin, end = end, begin
+    return end[1] < begin[1] or (end[1] == begin[1] and end[0] > begin[0])
+
+
+def mean(values: list[int], weights: list[int]) -> Fraction:
+    total = sum(value * weight for value, weight in zip(values, weights, strict=True))
+    return Fraction(total, sum(weights))
+
+
+def round_half_up(value: Fraction) -> int:
+    return floor(value + Fraction(1, 2))
