@@ -1,0 +1,263 @@
+"""Triangles at the ends of every range: the models do not overflow, and the widths are tight."""
+
+from fractions import Fraction
+from itertools import combinations, product
+from math import floor
+
+import numpy as np
+import pytest
+
+from cardcage.golden import bit_true, exact, fixed
+from cardcage.golden.coverage import Triangles
+from cardcage.golden.display_list import DisplayList, coordinate_bits
+from cardcage.golden.grid import Grid
+from cardcage.golden.setup import (
+    Planes,
+    carried_word_bits,
+    edge_column_bits,
+    edge_remainder_bits,
+    prepare,
+    scene_fraction_bits,
+)
+
+FARTHEST = 2**32 - 2
+
+
+def listed(position, depth, width, height=None, **rest):
+    position = np.array(position, np.int32).reshape(-1, 3, 2)
+    color = np.zeros((len(position), 3, 3), np.uint8)
+    color[:] = [[0, 255, 9], [255, 0, 8], [255, 255, 7]]
+    return DisplayList(width, height or width, position, np.array(depth, np.int64).reshape(-1, 3),
+                       rest.pop("color", color), **rest)
+
+
+def rational(display_list, primitive, x, y):
+    """Depth of a covered pixel, by barycentric weights in fractions."""
+    (x0, y0), (x1, y1), (x2, y2) = display_list.position[primitive].tolist()
+    z0, z1, z2 = display_list.depth[primitive].tolist()
+    unit = 1 << display_list.sub_bits
+    px, py = x * unit + unit // 2 - x0, y * unit + unit // 2 - y0
+    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    second = Fraction(px * (y2 - y0) - (x2 - x0) * py, area)
+    third = Fraction((x1 - x0) * py - px * (y1 - y0), area)
+    assert min(1 - second - third, second, third) >= 0
+    return floor(z0 + second * (z1 - z0) + third * (z2 - z0) + Fraction(1, 2))
+
+
+def in_int64(display_list, primitive, x, y, doubled):
+    """The same from the formula as it stands, in int64: (2N + D) / 2D or (N + D/2) / D."""
+    (x0, y0), (x1, y1), (x2, y2) = display_list.position[primitive].astype(np.int64)
+    z = display_list.depth[primitive]
+    unit = 1 << display_list.sub_bits
+    px, py = x * unit + unit // 2, y * unit + unit // 2
+    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    weights = np.array([(x1 - px) * (y2 - py) - (x2 - px) * (y1 - py),
+                        (x2 - px) * (y0 - py) - (x0 - px) * (y2 - py),
+                        (x0 - px) * (y1 - py) - (x1 - px) * (y0 - py)]) * np.sign(area)
+    numerator, area = (weights * z).sum(keepdims=True), abs(area)
+    return int(((2 * numerator + area) // (2 * area) if doubled
+                else (numerator + area // 2) // area)[0])
+
+
+def extreme_lists(size):
+    """One triangle each: over the guard band's corners, whole and nearly, with extreme depths."""
+    limit = 1 << (coordinate_bits(size, size, 8) - 1)
+    low, high = -limit, limit - 1
+    random = np.random.default_rng(size)
+    corners = [[low, low], [low, high], [high, low], [high, high]]
+    for triple in combinations(corners, 3):
+        for depth in product([0, FARTHEST], [0, 1, FARTHEST], [FARTHEST, FARTHEST // 2]):
+            yield listed([triple], [depth], size, depth_bits=32)
+    for _ in range(8):
+        away = random.integers(0, limit // 8, (3, 2)) * [[1, -1], [-1, 1], [-1, -1]]
+        yield listed([np.array(corners[1:]) + away], [random.integers(0, FARTHEST, 3)], size,
+                     depth_bits=32)
+
+
+def test_every_pixel_of_extreme_triangles():
+    """64 x 64 pixels are enough for 2b + d + 1 = 65 bits."""
+    checked = overflowed = 0
+    for display_list in extreme_lists(64):
+        assert 2 * display_list.coordinate_bits + display_list.depth_bits + 1 > 63
+        fragments = exact.fragments(display_list)
+        triangles = Triangles.of(display_list, Grid.of(display_list))
+        numerator_limit = abs(int(triangles.double_area[0])) * (int(display_list.depth.max()) + 1)
+        assert exact._Depth(display_list, triangles).whole == (numerator_limit < 2**63)
+        pixels = list(zip(fragments.x.tolist(), fragments.y.tolist(), strict=True))
+        for (x, y), depth in list(zip(pixels, fragments.depth.tolist(), strict=True))[::7]:
+            right = rational(display_list, 0, x, y)
+            assert depth == right
+            overflowed += in_int64(display_list, 0, x, y, doubled=True) != right
+            checked += 1
+        enough = scene_fraction_bits(display_list)
+        picture = bit_true.draw(display_list, fraction_bits=enough)
+        assert np.array_equal(picture.depth[fragments.y, fragments.x], fragments.depth)
+        expected = exact.draw(display_list)
+        assert np.array_equal(picture.color, expected.color)
+        assert np.array_equal(expected.depth, picture.depth)
+    print(f"{checked} pixels; (2N + D) / 2D in int64 is wrong at {overflowed}")
+    assert checked > 5000 and overflowed > checked // 3
+
+
+@pytest.mark.parametrize("doubled", [True, False])
+def test_the_formula_in_int64_overflows(doubled):
+    """On the largest screen nearly everywhere, in the form that needs two bits less as well."""
+    limit = 1 << 21
+    display_list = listed([[[limit - 1, limit - 1], [limit - 1, -limit], [-limit, limit - 1]]],
+                          [[FARTHEST, FARTHEST - 5, FARTHEST // 3]], 4096, depth_bits=32)
+    random = np.random.default_rng(3)
+    enough = scene_fraction_bits(display_list)
+    prepared = prepare(display_list, fraction_bits=enough)
+    wrong = checked = 0
+    for x, y in random.integers(0, 4096, (12, 2)).tolist():
+        [depth] = exact.fragments(display_list, pixel=(x, y)).depth.tolist()
+        right = rational(display_list, 0, x, y)
+        assert depth == right
+        stored = bit_true.evaluate(prepared.depth, enough, *(np.array([n]) for n in (0, x, y)),
+                                   FARTHEST)
+        assert stored.tolist() == [right]
+        checked += 1
+        wrong += in_int64(display_list, 0, x, y, doubled) != right
+    assert wrong > checked // 2
+
+
+def test_on_both_sides_of_where_the_depth_is_split():
+    """D (depth + 1) just below and at 2**63: one plane, then two halves, the same picture."""
+    limit = 1 << 15
+    position = [[[limit - 1, limit - 1], [limit - 1, -limit], [-limit, limit - 1]]]
+    area = (2 * limit - 1) ** 2
+    last_whole = (2**63 - 1) // area - 1
+    assert area * (last_whole + 1) < 2**63 <= area * (last_whole + 2)
+    for greatest, whole in ((last_whole, True), (last_whole + 1, False)):
+        display_list = listed(position, [[greatest, 0, greatest]], 64, depth_bits=32)
+        triangles = Triangles.of(display_list, Grid.of(display_list))
+        assert exact._Depth(display_list, triangles).whole == whole
+        fragments = exact.fragments(display_list)
+        assert len(fragments) == 64 * 64
+        for at in range(0, len(fragments), 11):
+            x, y = int(fragments.x[at]), int(fragments.y[at])
+            assert fragments.depth[at] == rational(display_list, 0, x, y)
+
+
+# Widths.  Screens of 2**n pixels, since those come nearest to the ends.
+
+FORMATS = [(3, 2, 8), (4, 4, 12), (5, 8, 24), (3, 8, 32)]
+
+
+def signed_bits(values):
+    """The fewest bits that hold all of ``values`` as signed numbers."""
+    return max((value if value >= 0 else ~value).bit_length() for value in values) + 1
+
+
+def whole_range(n, s):
+    """Coordinate bits, and the four corners of the coordinate range."""
+    bits = coordinate_bits(1 << n, 1 << n, s)
+    assert bits == n + 2 + s
+    ends = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+    return bits, [list(corner) for corner in product(ends, repeat=2)]
+
+
+@pytest.mark.parametrize(("n", "s", "d"), FORMATS)
+def test_widths_of_area_edge_and_plane_numerator(n, s, d):
+    """Exactly 2b + 1, 2b - s + 1 and 2b + d + 3 bits, over every triangle of extreme corners."""
+    bits, corners = whole_range(n, s)
+    unit = 1 << s
+    centres = [unit // 2, ((1 << n) - 1) * unit + unit // 2]
+    areas, edges, numerators = [0], [0], [0]
+    for (x0, y0), (x1, y1), (x2, y2) in combinations(corners, 3):
+        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        areas += [area, -area]
+        for x, y in product(centres, repeat=2):
+            at = [(x1 - x) * (y2 - y) - (x2 - x) * (y1 - y),
+                  (x2 - x) * (y0 - y) - (x0 - x) * (y2 - y),
+                  (x0 - x) * (y1 - y) - (x1 - x) * (y0 - y)]
+            # Steps are multiples of 2**s, so what lies below never changes.
+            edges += [value >> s for value in at] + [-value >> s for value in at]
+        for values in product([0, 2**d - 2], repeat=3):
+            # The box is clipped to the screen: its origin is the first centre.
+            x = y = centres[0]
+            weights = [(x1 - x) * (y2 - y) - (x2 - x) * (y1 - y),
+                       (x2 - x) * (y0 - y) - (x0 - x) * (y2 - y),
+                       (x0 - x) * (y1 - y) - (x1 - x) * (y0 - y)]
+            sign = 1 if area > 0 else -1
+            numerator = sign * sum(w * z for w, z in zip(weights, values, strict=True))
+            numerators.append(2 * numerator + abs(area) // 2 * 2 + 1)
+    assert signed_bits(areas) == 2 * bits + 1
+    assert signed_bits(edges) == 2 * bits - s + 1
+    assert signed_bits(numerators) == 2 * bits + d + 3
+
+
+def columns_of(edges, rows, column_bits, remainder_bits, sum_bits):
+    """The column on each row of the first triangle's edge, in registers of those widths."""
+    step = fixed.wrap(int(edges.column_step[0]), column_bits)
+    column = fixed.wrap(int(edges.column[0]), column_bits)
+    remainder, remainder_step, denominator = (
+        fixed.wrap(int(part[0]), remainder_bits)
+        for part in (edges.remainder, edges.remainder_step, edges.denominator))
+    for _ in range(rows):
+        yield fixed.to_signed(column, column_bits)
+        total = fixed.wrap(remainder + remainder_step, sum_bits)
+        carry = total >= denominator
+        remainder = fixed.wrap(total - denominator * carry, remainder_bits)
+        column = fixed.wrap(column + step + carry, column_bits)
+
+
+@pytest.mark.parametrize(("n", "s"), [(3, 2), (4, 4), (5, 8), (9, 8)])
+def test_widths_of_the_edge_walker(n, s):
+    """b - s + 1 bits of column, b of remainder, b + 1 of their sum: none can be narrower."""
+    size = 1 << n
+    bits, corners = whole_range(n, s)
+    low, high = corners[0][0], corners[3][0]
+    widths = {"column_bits": edge_column_bits(bits, s),
+              "remainder_bits": edge_remainder_bits(bits),
+              "sum_bits": edge_remainder_bits(bits) + 1}
+    assert list(widths.values()) == [bits - s + 1, bits, bits + 1]
+    failed = set()
+    # The long edge is that from the first vertex to the last.  One at the right end of the
+    # range, all but straight down, its remainders near its height; and a slanting one.
+    for triangle in ([[high, low], [low, high], [high - 1, high]],
+                     [[low, low], [low, high], [high - (high - low) // 3, high]]):
+        prepared = prepare(listed([triangle], [[0, 0, 0]], size, sub_bits=s),
+                           fraction_bits=0)
+        rows = int(prepared.bottom[0] - prepared.top[0])
+        assert rows == size
+        (x0, y0), (x1, y1) = triangle[0], triangle[2]
+        unit = 1 << s
+        true = []
+        for row in range(size):
+            intercept = x0 + Fraction((row * unit + unit // 2 - y0) * (x1 - x0), y1 - y0)
+            true.append(-floor(-(intercept - unit // 2) / unit))
+        assert list(columns_of(prepared.long, rows, **widths)) == true
+        for name in widths:
+            narrower = widths | {name: widths[name] - 1}
+            if list(columns_of(prepared.long, rows, **narrower)) != true:
+                failed.add(name)
+    assert failed == set(widths)
+
+
+@pytest.mark.parametrize("interpolant", ["depth", "color"])
+@pytest.mark.parametrize("fraction_bits", [0, 3, 5, 7])
+def test_width_of_carried_words(interpolant, fraction_bits):
+    """One guard bit less and the largest value, carried too high, wraps instead of saturating.
+
+    The value falls by half a unit of 2**-F a pixel to the left and downwards of the diagonal.
+    Both increments are rounded up: half a unit too high for each pixel right or down.
+    """
+    size, unit = 512, 256
+    limit, value_bits = (255, 8) if interpolant == "color" else (2**24 - 2, 24)
+    beyond, below = 768 * unit, 256 * unit
+    values = np.array([limit, limit, limit - 2 ** (7 - fraction_bits)])
+    display_list = listed([[[0, 0], [beyond, beyond], [0, below]]],
+                          [values if interpolant == "depth" else [0, 0, 0]], size,
+                          color=(values if interpolant == "color" else values * 0)
+                          .astype(np.uint8)[None, :, None].repeat(3, axis=2))
+    prepared = prepare(display_list, fraction_bits=fraction_bits)
+    planes = prepared.depth if interpolant == "depth" else prepared.color[0]
+    assert planes.word_bits == carried_word_bits(value_bits, fraction_bits, 2 * size - 2)
+    narrow = Planes(*(fixed.wrap(part, planes.word_bits - 1)
+                      for part in (planes.start, planes.step_x, planes.step_y)),
+                    planes.word_bits - 1)  # fmt: skip
+    assert len(exact.fragments(display_list, pixel=(510, 511))) == 1
+    at = [np.array([number]) for number in (0, 510, 511)]
+    assert bit_true.evaluate(planes, fraction_bits, *at, limit).tolist() == [limit]
+    assert bit_true.evaluate(narrow, fraction_bits, *at, limit).tolist() != [limit]
