@@ -12,6 +12,7 @@ from .command_group import EXIT_DIFFERENT, CommandGroup, warn
 from .command_options import machine_options
 from .engines import AUTO, ENGINES
 from .export import COMPONENT_NAMES, export, export_summary
+from .hard_cases_table import hard_cases_json, hard_cases_table, hard_cases_text
 from .machine_options import MachineOptions
 from .model_cache import cache_folder, cache_size, clear_cache
 from .progress import progress_bar
@@ -61,8 +62,9 @@ def render(command_line: str, scene: str, waveform: Path | None, out: Path,
            **options: Any) -> None:
     """Draw SCENE on a simulated machine and compare every pixel with the golden model.
 
-    SCENE is a mesh (.obj .stl .ply .glb .gltf), a saved display list (.npz) or a built-in scene,
-    with arguments if need be.  The report goes to DIR: open report.html.
+    SCENE is a mesh (.obj .stl .ply .glb .gltf), a saved display list (.npz), a hard case
+    (hard:NAME) or a built-in scene, with arguments if need be.  The report goes to DIR: open
+    report.html.
 
     \b
     Examples:
@@ -135,19 +137,26 @@ def export_command(scene: str | None, component: str | None, output: Path,
 
 
 @main.command()
+@click.option("--hard", is_flag=True,
+              help="The hard cases, and what a naive implementation does wrong on each.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: a list of objects.")
-def scenes(as_json: bool) -> None:
-    """List the built-in scenes, their parameters and their triangles.
+def scenes(hard: bool, as_json: bool) -> None:
+    """List the built-in scenes, their parameters and their triangles, or the hard cases.
 
     \b
     Examples:
       cardcage scenes
       cardcage scenes --json
       cardcage render sphereflake:depth=1,tessellation=2
+      cardcage scenes --hard
+      cardcage render hard:sliver-fan
     """
+    to_json, to_table, to_text = (
+        (hard_cases_json, hard_cases_table, hard_cases_text) if hard
+        else (scenes_json, scenes_table, scenes_text))
     if as_json:
-        click.echo(scenes_json())
+        click.echo(to_json())
     elif sys.stdout.isatty():
-        scenes_table()
+        to_table()
     else:
-        click.echo(scenes_text())
+        click.echo(to_text())
