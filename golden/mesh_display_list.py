@@ -35,13 +35,25 @@ def display_list_of_mesh(
     what lies wholly outside the screen or before the near plane; what remains
     of a clipped face takes its place.
     """
+    corners = corners_of_mesh(mesh, picture, shading=shading, camera=camera, lighting=lighting)
+    return display_list_of_corners(corners, picture, background=background, cull=cull)
+
+
+def corners_of_mesh(
+    mesh: Mesh,
+    picture: PictureFormat,
+    *,
+    shading: Shading = "gouraud",
+    camera: Camera | None = None,
+    lighting: Lighting = DEFAULT_LIGHTING,
+) -> NDArray[np.float64]:
+    """Transform and light the faces that have area, for ``display_list_of_corners``."""
     view = framing_camera(mesh) if camera is None else camera
     colors = lit_corners(mesh, view, shading, lighting)
     homogeneous = transform(view.matrix(picture, mesh.vertices[np.unique(mesh.faces)]),
                             mesh.vertices)
     corners = np.concatenate([homogeneous[mesh.faces], colors], axis=2)
-    return display_list_of_corners(corners[~mesh.degenerate()], picture, background=background,
-                                   cull=cull)
+    return np.asarray(corners[~mesh.degenerate()], np.float64)
 
 
 def display_list_of_corners(

@@ -21,6 +21,7 @@ from .scenes.registry import (
     DisplayListScene,
     HardCaseScene,
     MeshFileScene,
+    Scene,
     parse_scene,
 )
 
@@ -76,16 +77,23 @@ def make_display_list(
     )
     shade = check_shading(shading)
     behind = DEFAULT_BACKGROUND if background is None else background
-    if isinstance(chosen, MeshFileScene):
-        mesh = load_mesh(chosen.path)
-    elif chosen.built_in.mesh is not None:
-        mesh = chosen.built_in.mesh(**chosen.arguments)
-    else:
+    mesh = mesh_of_scene(chosen)
+    if mesh is None:
+        assert isinstance(chosen, BuiltInScene)
         return _random(chosen, picture, behind, shade, camera)
     listed = display_list_of_mesh(
         mesh, picture, shading=shade, camera=camera, background=behind, lighting=lighting, cull=cull
     )
     return SceneDisplayList(listed, chosen.name, _notes(mesh, listed))
+
+
+def mesh_of_scene(scene: Scene) -> Mesh | None:
+    """The mesh of a file or a built-in scene; None for triangles that are made on the screen."""
+    if isinstance(scene, MeshFileScene):
+        return load_mesh(scene.path)
+    if isinstance(scene, BuiltInScene) and scene.built_in.mesh is not None:
+        return scene.built_in.mesh(**scene.arguments)
+    return None
 
 
 def _notes(mesh: Mesh, listed: DisplayList) -> tuple[str, ...]:
