@@ -17,6 +17,7 @@ from .machine_options import (
     MachineOptions,
     machine_for_scene,
     machine_without_scene,
+    option_words,
     resolution_warnings,
 )
 
@@ -134,15 +135,8 @@ def _scene_name(scene: str | Path) -> str:
 
 def _header(configuration: MachineConfiguration, options: MachineOptions, scene: str | Path | None,
             component: str | None, precision: str) -> str:
-    asked = {field.name: getattr(options, field.name) for field in fields(options)}
-    if asked["size"] is not None:
-        asked["size"] = "x".join(map(str, asked["size"]))
-    if asked["shading"] == "auto":
-        asked["shading"] = None
     words = ["cardcage export", *([_scene_name(scene)] if scene is not None else []),
-             *(f"--{name.replace('_', '-')} {value}" for name, value in asked.items()
-               if value is not None),
-             *([f"--component {component}"] if component else [])]
+             *option_words(options), *(["--component", component] if component else [])]
     built = ", ".join(f"{field.name} {getattr(configuration, field.name)}"
                       for field in fields(configuration) if field.name != "timing")
     paragraphs = [

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
 from ..golden.configuration import PRESETS, MachineConfiguration
+from ..golden.display_list import DisplayList
 from ..golden.errors import InputError
 from ..golden.plan import Plan, check_max_error, full_machine, plan
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
@@ -46,51 +47,69 @@ class MachineOptions:
         """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
         if self.preset is not None and self.preset not in PRESETS:
             raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
-        fields = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
+        settled = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
         for name in ("cards", "words", "clocks_per_pixel", "fraction_bits"):
             if getattr(self, name) is not None:
-                fields[name] = getattr(self, name)
+                settled[name] = getattr(self, name)
         if self.max_error is not None:
             check_max_error(self.max_error)
             if self.fraction_bits is not None:
                 raise InputError("--max-error: chooses the fraction bits itself; leave out "
                                  "--fraction-bits")
-            fields["fraction_bits"] = "exact"  # so the preset's are not meant
+            settled["fraction_bits"] = "exact"  # so the preset's are not meant
         if self.shading != "auto":
-            fields["shading"] = self.shading
+            settled["shading"] = self.shading
         if self.size is not None:
-            fields["width"], fields["height"] = self.size
-        return fields
+            settled["width"], settled["height"] = self.size
+        return settled
 
 
-def plan_for_scene(scene: str | Path, options: MachineOptions) -> tuple[SceneDisplayList, Plan]:
-    """Load a scene and plan its machine.  Raises ``InputError`` for whatever cannot be used."""
-    fields = options.machine()
-    width, height = fields.pop("width", None), fields.pop("height", None)
+def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:
+    """The display list at the size that was asked for.  Raises ``InputError``."""
+    settled = options.machine()
+    width, height = settled.get("width"), settled.get("height")
     if isinstance(parse_scene(scene), DisplayListScene | HardCaseScene) and options.size is None:
         width = height = None  # a display list has its own size, whatever the preset's
-    listed = make_display_list(scene, width=width, height=height,
-                               shading="flat" if options.shading == "flat" else "gouraud")
-    bits = fields.pop("fraction_bits", "exact")
-    return listed, plan(listed.display_list, max_error=options.max_error or 0,
-                        fraction_bits=None if bits == "exact" else bits, **fields)
+    return make_display_list(scene, width=width, height=height,
+                             shading="flat" if options.shading == "flat" else "gouraud")
+
+
+def plan_machine(display_list: DisplayList, options: MachineOptions) -> Plan:
+    """The least machine for a list, but for what was asked for.  Raises ``InputError``."""
+    settled = options.machine()
+    for name in ("width", "height"):
+        settled.pop(name, None)
+    bits = settled.pop("fraction_bits", "exact")
+    return plan(display_list, max_error=options.max_error or 0,
+                fraction_bits=None if bits == "exact" else bits, **settled)
 
 
 def machine_for_scene(scene: str | Path, options: MachineOptions
                       ) -> tuple[SceneDisplayList, MachineConfiguration]:
-    """As ``plan_for_scene``, without the reasons."""
-    listed, planned = plan_for_scene(scene, options)
-    return listed, planned.configuration
+    """Load a scene and plan its machine.  Raises ``InputError`` for whatever cannot be used."""
+    listed = load_scene(scene, options)
+    return listed, plan_machine(listed.display_list, options).configuration
 
 
 def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     """The machine for any scene of that size: exact for every triangle on the screen, or as exact
     as asked for, unless the options or the preset give the fraction bits.  Raises ``InputError``.
     """
-    fields = DEFAULT_SIZE | options.machine()
-    if fields.get("fraction_bits", "exact") != "exact":
-        return MachineConfiguration(**fields)
-    return full_machine(max_error=options.max_error or 0, **fields)
+    settled = DEFAULT_SIZE | options.machine()
+    if settled.get("fraction_bits", "exact") != "exact":
+        return MachineConfiguration(**settled)
+    return full_machine(max_error=options.max_error or 0, **settled)
+
+
+def option_words(options: MachineOptions) -> list[str]:
+    """The options as words of a command line, those that were asked for."""
+    asked = {field.name: getattr(options, field.name) for field in fields(MachineOptions)}
+    if asked["size"] is not None:
+        asked["size"] = "x".join(map(str, asked["size"]))
+    if asked["shading"] == "auto":
+        asked["shading"] = None
+    return [word for name, value in asked.items() if value is not None
+            for word in (f"--{name.replace('_', '-')}", str(value))]
 
 
 def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
