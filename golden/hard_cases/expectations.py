@@ -141,7 +141,7 @@ def _any_order(display_list: DisplayList, draw: Draw) -> str | None:
         complaint = difference("depth", got.depth, expected.depth)
         if complaint:
             return f"permutation {seed}: {complaint}"
-        winner = np.where(got.winner < 0, got.winner, order[got.winner])
+        winner = np.append(order, NO_PRIMITIVE)[got.winner]  # -1 is the last
         for primitive in np.unique(winner[winner != expected.winner]):
             # Another one is seen: then both are at the same depth there.
             alone = draw(reordered(display_list, np.array([primitive])))
