@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..golden.commands import Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
 from ..golden.display_list import DisplayList
 from ..golden.interlace import Interlace
+from ..golden.precision import in_finer_words
 from ..golden.scene_needs import fitted
 from ..golden.setup import prepare
 from .engine import Engine, EngineRun, Job, Progress, Scan
@@ -67,16 +68,22 @@ class Simulation:
     notes: tuple[str, ...] = ()
 
 
-def frame_commands(configuration: MachineConfiguration, display_list: DisplayList) -> list[int]:
+def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
+                   fraction_bits: int | None = None) -> list[int]:
     """Frame start, prepared triangles, frame end.
 
-    The host does the triangle set-up here, at the resolution the machine reports.  Raises
-    ``InputError`` for a list that is too wide for the machine.
+    The host does the triangle set-up here, at the resolution the machine reports.  With
+    ``fraction_bits``, fewer than the machine's, its planes are rounded to these, so that it draws
+    the picture of a machine that has no more: see ``draws_as_coarser``.  Raises ``InputError``
+    for a list that is too wide for the machine.
     """
     interlace = configuration.interlace
+    own = configuration.fraction_bits
     prepared = prepare(fitted(configuration, display_list),
-                       fraction_bits=configuration.fraction_bits, shading=configuration.shading,
+                       fraction_bits=own if fraction_bits is None else fraction_bits,
+                       shading=configuration.shading,
                        x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    prepared = in_finer_words(prepared, own)
     return [commands.frame_start(display_list.background),
             *commands.prepared_triangles(configuration, prepared),
             commands.command(Opcode.FRAME_END)]
@@ -91,10 +98,14 @@ def simulate(
     stall_seed: int | None = None,
     waveform: Path | None = None,
     progress: Progress | None = None,
+    fraction_bits: int | None = None,
 ) -> Simulation:
-    """Boot the machine, draw one frame, watch it on the video pins, read its depths back."""
+    """Boot the machine, draw one frame, watch it on the video pins, read its depths back.
+
+    ``fraction_bits`` as in ``frame_commands``.
+    """
     job = frame_job(configuration, display_list, memory_seed=memory_seed, stall_seed=stall_seed,
-                    waveform=waveform)
+                    waveform=waveform, fraction_bits=fraction_bits)
     return _interpret(configuration, engine.run(job, progress))
 
 
@@ -105,9 +116,10 @@ def frame_job(
     memory_seed: int | None = None,
     stall_seed: int | None = None,
     waveform: Path | None = None,
+    fraction_bits: int | None = None,
 ) -> Job:
     """Everything an engine needs to run one frame with depths and counters read back."""
-    words = [*frame_commands(configuration, display_list),
+    words = [*frame_commands(configuration, display_list, fraction_bits),
              commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
     interlace, elements = configuration.interlace, configuration.processing_elements
     boot = elements + 3  # domains, units, picture, booted
@@ -121,6 +133,20 @@ def frame_job(
         waveform=waveform,
         maximum_cycles=_bound(configuration, words),
     )
+
+
+def draws_as_coarser(configuration: MachineConfiguration, fraction_bits: int) -> bool:
+    """Whether the machine, told planes of ``fraction_bits``, draws what one built for them draws,
+    value for value and clock for clock.
+
+    Nothing but the widths of the interpolants depends on the fraction bits, and words with zeros
+    at the end sum to such words.  Only a coarser machine may have more guard bits than this one.
+    """
+    coarser = replace(configuration, fraction_bits=fraction_bits)
+    more = configuration.fraction_bits - fraction_bits
+    return more >= 0 and all(
+        getattr(configuration, name) - more >= getattr(coarser, name)
+        for name in ("depth_plane_bits", "channel_plane_bits"))
 
 
 def _bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
