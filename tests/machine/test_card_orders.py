@@ -4,7 +4,11 @@ import itertools
 
 import numpy as np
 import pytest
-from frames import draw, random_list
+from frames import check_bit_true, draw, golden_picture, random_list
+
+from cardcage.golden.configuration import configure
+from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.simulation import simulate
 
 LIST = random_list(7, 12, width=16, height=16)
 
@@ -24,6 +28,22 @@ def test_every_legal_order_gives_the_same_picture():
     # The orders are different machines all the same: the work falls differently.
     assert len({tuple(sorted(share)) for share in work.values()}) > 1, work
     assert work["PMMPMM"] != work["PMPMMM"]
+
+
+def test_coarse_precision_gives_every_order_the_same_errors():
+    """On lattices of one, two and four units the strides are multiples of the one increment."""
+    pictures = []
+    for cards in ("PM", "PMM", "PMPMMM", "PMMMPM"):
+        configuration = configure(LIST, cards=cards, fraction_bits=0,
+                                  clocks_per_pixel=2)
+        simulation = simulate(configuration, LIST, PysimEngine(), memory_seed=4)
+        check_bit_true(configuration, LIST, simulation)
+        pictures.append((simulation.video, simulation.depth))
+    for video, depth in pictures[1:]:
+        np.testing.assert_array_equal(video, pictures[0][0])
+        np.testing.assert_array_equal(depth, pictures[0][1])
+    exact = golden_picture(configuration, LIST)
+    assert (exact.depth != depth).any() and (exact.color != video).any()
 
 
 @pytest.mark.parametrize("cards", ["PMMMPM", "PMPMMPPMP", "PPMMMMMMMMPMMMMPMMPMM", "2x(PMPMMM)"])
