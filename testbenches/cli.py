@@ -15,6 +15,7 @@ from .export import COMPONENT_NAMES, export, export_summary
 from .hard_cases_table import hard_cases_json, hard_cases_table, hard_cases_text
 from .machine_options import MachineOptions
 from .model_cache import cache_folder, cache_size, clear_cache
+from .plan_command import plan_command
 from .progress import progress_bar
 from .render import DEFAULT_SCENE, RenderOptions, prepare_render
 from .render_summary import render_summary
@@ -160,3 +161,6 @@ def scenes(hard: bool, as_json: bool) -> None:
         to_table()
     else:
         click.echo(to_text())
+
+
+main.add_command(plan_command)

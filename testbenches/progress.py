@@ -1,4 +1,4 @@
-"""The progress bar of a simulation."""
+"""What shows on a terminal that something is still running."""
 
 from __future__ import annotations
 
@@ -37,3 +37,15 @@ def progress_bar(expected_cycles: int) -> Iterator[ProgressFunction | None]:
                        description="simulating" if cycles else "compiling the model, once")
 
         yield report
+
+
+@contextmanager
+def busy(description: str) -> Iterator[None]:
+    """A spinner while something runs that cannot say how far it is; none where the error output
+    is no terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
+    with console.status(description):
+        yield
