@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from ..golden.cards import MEMORY_UNIT, domains
 from ..golden.exact import depth_complexity
+from .page import page_environment
 from .rendering import Rendering
 from .report_facts import report_facts
 from .report_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
@@ -58,13 +57,7 @@ def write_report(rendering: Rendering, folder: Path) -> None:
 
 def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
     """The page, complete in itself: pictures and chart are inside it."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = page_environment()
     environment.filters["hexadecimal"] = _hexadecimal
     machine_depth, golden_depth = depth_pictures(rendering)
     # A picture larger than its place loses pixels there: a lone red one must not be among them.

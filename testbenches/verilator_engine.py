@@ -69,7 +69,7 @@ class VerilatorEngine:
         """The program for a configuration, and whether it had to be built."""
         main = (resources.files(__package__) / "templates" / "verilator_main.cpp").read_text()
         constants = _constants(configuration)
-        key = content_hash([self.verilog or _origin(configuration), main, constants, ONCE, *FLAGS,
+        key = content_hash([self.verilog or origin(configuration), main, constants, ONCE, *FLAGS,
                             self.tool.version(), self.tool.compiler])
 
         def build(folder: Path) -> None:
@@ -88,7 +88,7 @@ class VerilatorEngine:
         return folder / "machine", fresh
 
 
-def _origin(configuration: MachineConfiguration) -> str:
+def origin(configuration: MachineConfiguration) -> str:
     """Everything the machine's Verilog is made from: quicker to read than to translate."""
     sources = [resources.files(f"cardcage.{folder}") for folder in ("hdl", "golden")]
     texts = [path.read_text() for source in sources

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import io
-import re
 from collections.abc import Sequence
 
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
+from .page import chart_style, svg_element
 from .simulation import Work
 
 FRAGMENTS_COLOR = "#3b82c4"
 BUSY_COLOR = "#d98a2b"
-
-#: Stands for the page's own text colour, which follows the reader's light or dark setting.
-_TEXT_COLOR = "#010203"
 
 #: Beyond, figures beside the bars would overlap.
 _LABELLED_ELEMENTS = 24
@@ -28,10 +23,7 @@ def work_chart(work: Sequence[Work]) -> str:
 
     It holds no link and takes the page's text colour.
     """
-    style = {"svg.fonttype": "none", "svg.hashsalt": "cardcage", "font.family": "sans-serif",
-             "font.size": 10, "text.color": _TEXT_COLOR, "axes.labelcolor": _TEXT_COLOR,
-             "axes.edgecolor": _TEXT_COLOR, "xtick.color": _TEXT_COLOR, "ytick.color": _TEXT_COLOR}
-    with rc_context(style):
+    with chart_style():
         height = 1.1 + min(0.34 * len(work), 12.0)
         figure = Figure(figsize=(9.0, height), layout="constrained")
         figure.get_layout_engine().set(wspace=0.06)
@@ -44,10 +36,7 @@ def work_chart(work: Sequence[Work]) -> str:
             fragments.set_yticks(range(len(work)), [f"PE {number}" for number in range(len(work))])
         else:
             fragments.set_ylabel("processing element")
-        file = io.StringIO()
-        nothing = dict.fromkeys(("Creator", "Date", "Format", "Type"))
-        figure.savefig(file, format="svg", transparent=True, metadata=nothing)
-    return _inline(file.getvalue())
+        return svg_element(figure, "Fragments and busy cycles of each processing element")
 
 
 def _bars(axes: Axes, values: Sequence[int], color: str, label: str) -> None:
@@ -60,13 +49,3 @@ def _bars(axes: Axes, values: Sequence[int], color: str, label: str) -> None:
     axes.tick_params(axis="y", length=0)
     if len(values) <= _LABELLED_ELEMENTS:
         axes.bar_label(bars, [f"{value:,}" for value in values], padding=4)
-
-
-def _inline(document: str) -> str:
-    """The element alone, as HTML wants it: no prologue, no name spaces, its size left to CSS."""
-    element = document[document.index("<svg"):]
-    element = re.sub(r'\s+xmlns(:\w+)?="[^"]*"', "", element)
-    head, rest = element.split(">", 1)
-    head = re.sub(r'\s(width|height)="[^"]*"', "", head)
-    label = 'role="img" aria-label="Fragments and busy cycles of each processing element"'
-    return f"{head} {label}>{rest}".replace(_TEXT_COLOR, "currentColor").strip()
