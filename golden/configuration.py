@@ -13,7 +13,8 @@ from .interlace import Interlace, interlace_for
 from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .setup import (
     COLOR_BITS,
-    carried_word_bits,
+    color_word_bits,
+    depth_word_bits,
     edge_column_bits,
     edge_remainder_bits,
     scene_fraction_bits,
@@ -43,14 +44,13 @@ class MachineConfiguration:
     ``allow_orphans``     accept memory units left of every processing element
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
-    ``plan`` says what a scene needs.  Left at 0 or None, all of them fit.
+    ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
 
     ``coordinate_bits``      of a signed vertex coordinate
     ``edge_column_bits``     of a signed column on an edge's own rows
     ``edge_remainder_bits``  of an edge's height, in sub-pixel units
-    ``depth_range_bits``     of the greatest vertex depth; stored depths keep ``depth_bits``
-    ``triangle_extent``      pixels from the corner of a triangle's box to its farthest pixel,
-                             right and down together
+    ``depth_integer_bits``   of carried depth, its sign included
+    ``channel_integer_bits`` of a carried colour channel, likewise
 
     Raises ``InputError`` where a number is out of range or the cards do not make a machine.
     """
@@ -71,8 +71,8 @@ class MachineConfiguration:
     coordinate_bits: int = 0
     edge_column_bits: int = 0
     edge_remainder_bits: int = 0
-    depth_range_bits: int = 0
-    triangle_extent: int = field(default=None)  # type: ignore[assignment]
+    depth_integer_bits: int = 0
+    channel_integer_bits: int = 0
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -88,6 +88,8 @@ class MachineConfiguration:
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
             ("clocks_per_pixel", 2, 256),
+            ("depth_integer_bits", 0, 2 * self.depth_bits),
+            ("channel_integer_bits", 0, 2 * CHANNEL_BITS),
         ):
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
@@ -95,10 +97,6 @@ class MachineConfiguration:
         for name, most in self._widest().items():
             check_whole(name, getattr(self, name), 0, most)
             fix(name, getattr(self, name) or most)
-        farthest = self.width + self.height - 2
-        if self.triangle_extent is None:
-            fix("triangle_extent", farthest)
-        check_whole("triangle_extent", self.triangle_extent, 0, farthest)
         if not self.allow_orphans:
             check_cards(self.cards)
         if not self.words:
@@ -128,7 +126,6 @@ class MachineConfiguration:
             "coordinate_bits": coordinate,
             "edge_column_bits": edge_column_bits(coordinate, self.sub_bits),
             "edge_remainder_bits": edge_remainder_bits(coordinate),
-            "depth_range_bits": self.depth_bits,
         }
 
     # Cards
@@ -175,11 +172,15 @@ class MachineConfiguration:
     @property
     def depth_plane_bits(self) -> int:
         """Carried depth; sums wrap, values at covered pixels fit with their error."""
-        return carried_word_bits(self.depth_range_bits, self.fraction_bits, self.triangle_extent)
+        if self.depth_integer_bits:
+            return self.depth_integer_bits + self.fraction_bits
+        return depth_word_bits(self.depth_bits, self.fraction_bits, self.width, self.height)
 
     @property
     def channel_plane_bits(self) -> int:
-        return carried_word_bits(CHANNEL_BITS, self.fraction_bits, self.triangle_extent)
+        if self.channel_integer_bits:
+            return self.channel_integer_bits + self.fraction_bits
+        return color_word_bits(self.fraction_bits, self.width, self.height)
 
     @property
     def depth_background(self) -> int:

@@ -7,10 +7,10 @@ from typing import Any
 
 from . import bit_true
 from .commands import layout_bits, prepared_triangle_layout
-from .configuration import CHANNEL_BITS, MachineConfiguration
+from .configuration import MachineConfiguration
 from .display_list import DisplayList
 from .errors import InputError
-from .fixed import MAX_FRACTION_BITS, exact_fraction_bits, guard_bits
+from .fixed import MAX_FRACTION_BITS, exact_fraction_bits
 from .ranges import check_whole
 from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
 
@@ -94,10 +94,11 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     ``fraction_bits``  None: the fewest for ``max_error``
     ``rest``           further fields of ``MachineConfiguration``, which are then not planned
 
-    Coverage is exact in any case.  The picture is the one that the machine for the
-    whole screen draws; the stored depth keeps the list's ``depth_bits``, since the
+    Coverage is exact in any case, and the exact picture is the same as on the machine
+    for the whole screen.  The stored depth keeps the list's ``depth_bits``, since the
     background's depth is part of the picture.  Planned is for the resolution that the
-    memory holds.  Raises ``InputError``.
+    memory holds: with units pulled out, ``scene_needs.fitted`` decides whether the list
+    still fits.  Raises ``InputError``.
     """
     check_max_error(max_error)
     if fraction_bits is not None and max_error:
@@ -119,8 +120,8 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         "coordinate_bits": needs.coordinate_bits,
         "edge_column_bits": needs.edge_column_bits,
         "edge_remainder_bits": needs.edge_remainder_bits,
-        "depth_range_bits": needs.depth_range_bits,
-        "triangle_extent": needs.extent,
+        "depth_integer_bits": needs.depth_integer_bits(fraction_bits),
+        "channel_integer_bits": needs.channel_integer_bits(fraction_bits),
         # Behind the clear of the frame's start all of them can wait.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
     } | {name: value for name, value in rest.items() if name != "shading"})
@@ -161,10 +162,9 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
         bits("edge remainder bits", "edge_remainder_bits",
              f"the highest edge is {needs.edge_height:,}/{unit} pixel high"),
         _stored_depth(planned, needs),
-        bits("depth range bits", "depth_range_bits",
-             f"the farthest vertex has depth {needs.greatest_depth:,}"),
         bits("fraction bits", "fraction_bits", _precision(planned, needs, max_error)),
-        _guards(planned, full, needs),
+        _integer("depth", planned, full, needs.greatest_depth, needs),
+        _integer("channel", planned, full, needs.greatest_channel, needs),
         _interpolants(planned, full, needs),
         PlanLine("lines", "none", "none", "the scene has triangles only: no line stepper"),
         PlanLine("words a memory unit", f"{planned.words:,}", f"{full.words:,}",
@@ -176,7 +176,7 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
 
 
 def _stored_depth(planned: MachineConfiguration, needs: SceneNeeds) -> PlanLine:
-    fits = needs.depth_range_bits
+    fits = needs.greatest_depth.bit_length()
     reason = f"the picture's format: its background lies at depth {planned.depth_background:,}"
     if fits < planned.depth_bits:
         reason += f"; {fits} would hold the vertices"
@@ -194,21 +194,24 @@ def _precision(planned: MachineConfiguration, needs: SceneNeeds, max_error: int)
             f"up to {error:.3g}; exact from {needs.exact_fraction_bits}")
 
 
-def _guards(planned: MachineConfiguration, full: MachineConfiguration,
-            needs: SceneNeeds) -> PlanLine:
-    def guards(machine: MachineConfiguration) -> str:
-        widths = [machine.depth_range_bits] + [CHANNEL_BITS] * (machine.shading != "flat")
-        return " and ".join(str(guard_bits(width, machine.fraction_bits, machine.triangle_extent))
-                            for width in widths)
-
-    return PlanLine("guard bits", guards(planned), guards(full),
-                    f"the largest triangle reaches {needs.extent} pixels, right and down; the "
-                    f"widest has {needs.widest} columns, the tallest {needs.tallest} rows")
+def _integer(name: str, planned: MachineConfiguration, full: MachineConfiguration,
+             greatest: int, needs: SceneNeeds) -> PlanLine:
+    """The bits of carried depth or of a carried channel above its binary point."""
+    widths = [getattr(machine, f"{name}_plane_bits") - machine.fraction_bits
+              for machine in (planned, full)]
+    if name == "channel" and planned.shading == "flat":
+        return PlanLine("channel integer bits", "-", str(widths[1]), "no channel is interpolated")
+    error = needs.error(planned.fraction_bits)
+    changed = replace(full, **{f"{name}_integer_bits": widths[0]})
+    return PlanLine(
+        f"{name} integer bits", str(widths[0]), str(widths[1]),
+        f"a vertex has up to {greatest:,}" + (f", off by up to {error:,}" if error else "")
+        + ", and a sign", triangle_bits(full) - triangle_bits(changed))
 
 
 def _interpolants(planned: MachineConfiguration, full: MachineConfiguration,
                   needs: SceneNeeds) -> PlanLine:
-    named = {"flat": "depth", "gouraud": "depth, red, green, blue"}
+    named = {"flat": "depth", "gouraud": "depth, colour"}
     if planned.shading == "flat":
         reason = ("every triangle has one colour" if needs.flat else
                   "flat shading asked for") + ": no colour interpolator"

@@ -8,17 +8,19 @@ that count, which are those on an edge's own rows and at covered pixels.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .bit_true import error_bound
 from .configuration import MachineConfiguration
 from .display_list import DisplayList
 from .errors import InputError
 from .fixed import exact_fraction_bits
 from .grid import Grid
-from .setup import COLOR_BITS, Edges, Outlines, carried_word_bits, outline
+from .setup import Edges, Outlines, outline
 
 Int64 = NDArray[np.int64]
 
@@ -36,6 +38,7 @@ class SceneNeeds:
     ``columns``              least and greatest column on a row of an edge
     ``edge_height``          of the highest edge, in sub-pixel units
     ``greatest_depth``       of a vertex
+    ``greatest_channel``     of a vertex's colour
     ``extent``               the largest triangle's, right and down together, in pixels
     ``widest``, ``tallest``  columns and rows of the widest and of the tallest box
     ``exact_fraction_bits``  at which every triangle is exact, because of the one with
@@ -51,6 +54,7 @@ class SceneNeeds:
     columns: tuple[int, int]
     edge_height: int
     greatest_depth: int
+    greatest_channel: int
     extent: int
     widest: int
     tallest: int
@@ -70,15 +74,24 @@ class SceneNeeds:
     def edge_remainder_bits(self) -> int:
         return max(1, self.edge_height.bit_length())
 
-    @property
-    def depth_range_bits(self) -> int:
-        return max(1, self.greatest_depth.bit_length())
+    def error(self, fraction_bits: int) -> int:
+        """The most by which a stored depth or channel is off."""
+        if fraction_bits >= self.exact_fraction_bits:
+            return 0
+        return ceil(error_bound(fraction_bits, self.extent))
 
-    def depth_plane_bits(self, fraction_bits: int) -> int:
-        return carried_word_bits(self.depth_range_bits, fraction_bits, self.extent)
+    def depth_integer_bits(self, fraction_bits: int) -> int:
+        """Of carried depth: at a covered pixel it lies between the vertices', but for its error.
 
-    def channel_plane_bits(self, fraction_bits: int) -> int:
-        return carried_word_bits(COLOR_BITS, fraction_bits, self.extent)
+        Whatever else the sums come to, modulo a power of two they end there.
+        """
+        error = self.error(fraction_bits)
+        return _signed_bits(-error, self.greatest_depth + error)
+
+    def channel_integer_bits(self, fraction_bits: int) -> int:
+        """Of a carried channel, likewise."""
+        error = self.error(fraction_bits)
+        return _signed_bits(-error, self.greatest_channel + error)
 
 
 def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:
@@ -102,6 +115,7 @@ def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0
         edge_height=max(int(edges.denominator.max(initial=1))
                         for edges in (outlines.long, outlines.upper, outlines.lower)),
         greatest_depth=int(display_list.depth[boxes.primitive].max(initial=0)),
+        greatest_channel=int(display_list.color[boxes.primitive].max(initial=0)),
         extent=int(extent.max(initial=0)),
         widest=int((boxes.right - boxes.left).max(initial=0)),
         tallest=int((boxes.bottom - boxes.top).max(initial=0)),
@@ -183,8 +197,8 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
         ("coordinate_bits", needs.coordinate_bits),
         ("edge_column_bits", needs.edge_column_bits),
         ("edge_remainder_bits", needs.edge_remainder_bits),
-        ("depth_plane_bits", needs.depth_plane_bits(bits)),
-        ("channel_plane_bits", needs.channel_plane_bits(bits)),
+        ("depth_plane_bits", needs.depth_integer_bits(bits) + bits),
+        ("channel_plane_bits", needs.channel_integer_bits(bits) + bits),
     ):
         if field == "channel_plane_bits" and configuration.shading == "flat":
             continue

@@ -52,25 +52,15 @@ def edge_remainder_bits(coordinate_bits: int) -> int:
     return coordinate_bits
 
 
-def carried_word_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
-    """Width of an interpolant whose vertices hold values below ``2**value_bits``.
-
-    ``extent`` bounds x + y, in pixels, from the corner of a triangle's clipped
-    bounding box.  Sums are kept modulo a power of two, so whatever is wide
-    enough for the values at covered pixels and their error gives these values:
-    a wider word holds the same number with its sign repeated.
-    """
-    return value_bits + fixed.guard_bits(value_bits, fraction_bits, extent) + fraction_bits
-
-
 def depth_word_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
     """Width of carried depth at which every triangle of a ``width`` x ``height`` screen fits."""
-    return carried_word_bits(depth_bits, fraction_bits, width + height - 2)
+    guard = fixed.guard_bits(depth_bits, fraction_bits, width + height - 2)
+    return depth_bits + guard + fraction_bits
 
 
 def color_word_bits(fraction_bits: int, width: int, height: int) -> int:
     """Width of a carried colour channel at which every triangle of the screen fits."""
-    return carried_word_bits(COLOR_BITS, fraction_bits, width + height - 2)
+    return depth_word_bits(COLOR_BITS, fraction_bits, width, height)
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ def plan_command(scene: str, cycles: int | None, cells: bool, as_json: bool,
     """Say which machine SCENE needs, every number with its reason and what it saves.
 
     The machine is the one that `cardcage render SCENE` simulates and `cardcage export SCENE`
-    writes.  Its picture is the same as that of a machine for every triangle on the screen.
+    writes.  Without --max-error or --fraction-bits its picture is exact.
 
     \b
     Examples:
