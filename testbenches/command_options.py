@@ -47,20 +47,24 @@ class FractionBits(click.ParamType):
         return int(value)
 
 
-#: One for each field of ``machine_options.MachineOptions``.
-_MACHINE_OPTIONS = (
+#: Together one for each field of ``machine_options.MachineOptions``.
+_CAGE_OPTIONS = (
     click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
                  "processing element, M a memory unit.  [default: 2x(PMM)]"),
     click.option("--size", type=Size(), metavar="WxH",
                  help="Highest resolution.  [default: 64x64]"),
     click.option("--preset", type=click.Choice(list(PRESETS)),
                  help="A named machine; other options override it."),
+)
+_PRECISION_OPTIONS = (
     click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
                  help="Fraction bits of depth and colour; exact takes what the scene needs.  "
                  "[default: exact]"),
     click.option("--max-error", type=click.IntRange(0, MAXIMUM_ERROR), metavar="LSB",
                  help="In place of fraction bits: the fewest at which no depth is more than that "
                  "off; 0 is exact."),
+)
+_FURTHER_OPTIONS = (
     click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
                  show_default=True, help="Colour interpolators in the machine, or not; auto has "
                  "them where the scene needs them."),
@@ -74,6 +78,16 @@ _MACHINE_OPTIONS = (
 
 def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
-    for option in reversed(_MACHINE_OPTIONS):
+    return _with(command, _CAGE_OPTIONS + _PRECISION_OPTIONS + _FURTHER_OPTIONS)
+
+
+def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same but for its precision."""
+    return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS)
+
+
+def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]
+          ) -> Callable[..., Any]:
+    for option in reversed(options):
         command = option(command)
     return command

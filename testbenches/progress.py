@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -49,3 +49,25 @@ def busy(description: str) -> Iterator[None]:
         return
     with console.status(description):
         yield
+
+
+@contextmanager
+def step_bar(steps: int) -> Iterator[Callable[[str], None]]:
+    """A function to call with a few words before each of about ``steps`` steps; it shows nothing
+    where the error output is no terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda doing: None
+        return
+    with Progress(BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f}"),
+                  TimeElapsedColumn(), TextColumn("{task.description}"), console=console,
+                  transient=True) as bar:
+        task = bar.add_task("", total=steps)
+        begun = 0
+
+        def begin(doing: str) -> None:
+            nonlocal begun
+            bar.update(task, completed=begun, total=max(steps, begun + 1), description=doing)
+            begun += 1
+
+        yield begin

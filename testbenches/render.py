@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..golden.configuration import MachineConfiguration
+from ..golden.display_list import DisplayList
 from ..golden.errors import InputError
 from ..golden.exact import depth_complexity
 from ..golden.scene_display_list import SceneDisplayList
@@ -99,16 +100,9 @@ class RenderJob:
         return rendering
 
     def _simulated(self, recording: Path | None, progress: Progress | None) -> Simulation:
-        try:
-            return simulate(self.configuration, self.scene.display_list,
-                            make_engine(self.options.engine),
-                            memory_seed=self.options.random_memory, waveform=recording,
-                            progress=progress)
-        except ToolMissingError as missing:
-            raise InputError(f"--engine {self.options.engine}: {missing}; or use --engine "
-                             "pysim") from None
-        except (TimeoutError, AssertionError) as error:
-            raise MachineError(f"the machine failed: {error}") from error
+        return simulate_frame(self.options.engine, self.configuration, self.scene.display_list,
+                              memory_seed=self.options.random_memory, waveform=recording,
+                              progress=progress)
 
     def _judged(self, simulation: Simulation) -> Rendering:
         comparison = compare(self.configuration, self.scene.display_list, simulation)
@@ -125,6 +119,21 @@ class RenderJob:
             warnings=tuple(warnings),
             wall_seconds=time.perf_counter() - self.began,
         )
+
+
+def simulate_frame(engine: str, configuration: MachineConfiguration, display_list: DisplayList,
+                   **options: Any) -> Simulation:
+    """``simulation.simulate`` with the engine of that name, for a command line.
+
+    Raises ``InputError`` where the engine cannot run here, ``MachineError`` where the machine
+    fails.
+    """
+    try:
+        return simulate(configuration, display_list, make_engine(engine), **options)
+    except ToolMissingError as missing:
+        raise InputError(f"--engine {engine}: {missing}; or use --engine pysim") from None
+    except (TimeoutError, AssertionError) as error:
+        raise MachineError(f"the machine failed: {error}") from error
 
 
 def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | None = None,
