@@ -88,8 +88,8 @@ class MachineConfiguration:
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
             ("clocks_per_pixel", 2, 256),
-            ("depth_integer_bits", 0, 2 * self.depth_bits),
-            ("channel_integer_bits", 0, 2 * CHANNEL_BITS),
+            ("depth_integer_bits", 0, 64),
+            ("channel_integer_bits", 0, 64),
         ):
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
