@@ -1,4 +1,4 @@
-"""The words between the host and the central broadcast controller, version 1.
+"""The words between the host and the central broadcast controller, version 2.
 
 One place for the layout: the hardware builds its structures from these tables,
 the host packs its words with them, and ``docs/command-words.md`` describes them.
@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .configuration import CHANNEL_BITS, MachineConfiguration
-from .setup import PreparedTriangles
+from .setup import PreparedTriangles, carry_edges
 
-VERSION = 1
+VERSION = 2
 OPCODE_BITS = 4
 BODY_OFFSET = 8
 WORD_BITS = 32
@@ -72,14 +72,8 @@ def plane_layout(bits: int) -> Layout:
 
 
 def edge_layout(configuration: MachineConfiguration) -> Layout:
-    """An edge's columns, row by row: an exact quotient and remainder by the edge's height."""
-    return {
-        "column": configuration.edge_column_bits,
-        "remainder": configuration.edge_remainder_bits,
-        "column_step": configuration.edge_column_bits,
-        "remainder_step": configuration.edge_remainder_bits,
-        "denominator": configuration.edge_remainder_bits,
-    }
+    """An edge's columns, row by row: in fixed point, exact on every row (``setup.carry_edges``)."""
+    return dict.fromkeys(("start", "step"), configuration.edge_word_bits)
 
 
 def planes_layout(configuration: MachineConfiguration) -> Layout:
@@ -181,8 +175,9 @@ def prepared_triangles(configuration: MachineConfiguration,
         for name in ("top", "middle", "bottom", "left", "right", "long_edge_left")
     }
     for edge in EDGES:
-        edges = getattr(prepared, edge)
-        values[edge] = {name: integers(getattr(edges, name)) for name in edge_layout(configuration)}
+        carried = carry_edges(getattr(prepared, edge), column_bits=configuration.edge_column_bits,
+                              fraction_bits=configuration.edge_fraction_bits)
+        values[edge] = {name: integers(getattr(carried, name)) for name in ("start", "step")}
     values["planes"] = {"depth": plane(prepared.depth),
                         **dict(zip(CHANNELS, colors, strict=True))}
     body: NDArray[np.object_] = pack(prepared_triangle_layout(configuration), values)

@@ -16,6 +16,7 @@ from .setup import (
     color_word_bits,
     depth_word_bits,
     edge_column_bits,
+    edge_fraction_bits,
     edge_remainder_bits,
     scene_fraction_bits,
 )
@@ -168,6 +169,15 @@ class MachineConfiguration:
     @property
     def address_bits(self) -> int:
         return max(1, (self.words - 1).bit_length())
+
+    @property
+    def edge_fraction_bits(self) -> int:
+        """Of a carried edge: as many as make its column exact on every row of the screen."""
+        return edge_fraction_bits(self.edge_remainder_bits, self.height)
+
+    @property
+    def edge_word_bits(self) -> int:
+        return self.edge_column_bits + self.edge_fraction_bits
 
     @property
     def depth_plane_bits(self) -> int:

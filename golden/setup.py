@@ -1,14 +1,15 @@
 """Triangle set-up, bit for bit: what a machine is told about each triangle.
 
-Per triangle: the rows and columns it may touch, three edges to be stepped row
-by row with a quotient and a remainder (exact for every triangle), and per
-interpolant a start and two increments, rounded half up at ``2**-fraction_bits``
-and kept modulo a power of two.
+Per triangle: the rows and columns it may touch, three edges, and per interpolant a
+start and two increments, rounded half up at ``2**-fraction_bits`` and kept modulo a
+power of two.  An edge is known as a quotient and a remainder; a machine carries it in
+fixed point, with as many fraction bits as make every column exact (``carry_edges``).
 
 Widths at which every triangle fits, b the display list's coordinate bits, s its sub-pixel bits:
 
     edge column      ``edge_column_bits``      b - s + 1, signed
-    edge remainder   ``edge_remainder_bits``   b, unsigned; remainder + step needs one more
+    edge remainder   ``edge_remainder_bits``   b, unsigned; the height of an edge as well
+    edge word        column bits + ``edge_fraction_bits``
     depth word       ``depth_word_bits``       depth bits + guard + fraction bits
     colour word      ``color_word_bits``       8 + guard + fraction bits
 
@@ -52,6 +53,17 @@ def edge_remainder_bits(coordinate_bits: int) -> int:
     return coordinate_bits
 
 
+def edge_fraction_bits(remainder_bits: int, height: int) -> int:
+    """Fraction bits at which a carried edge is exact on each of up to ``height`` rows.
+
+    ``CarriedEdges.start`` lies at least 1 / 2D from a whole number, D being the edge's
+    height, and so does the value on any later row.  Start and step, each rounded to
+    nearest at 2**-f, err by at most (1 + row) * 2**-(f+1) together; hence 2**f > D * rows
+    will do, and D is below ``2**remainder_bits``.
+    """
+    return (((1 << remainder_bits) - 1) * height).bit_length()
+
+
 def depth_word_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
     """Width of carried depth at which every triangle of a ``width`` x ``height`` screen fits."""
     guard = fixed.guard_bits(depth_bits, fraction_bits, width + height - 2)
@@ -85,6 +97,19 @@ class Edges:
     column_step: Int64
     remainder_step: Int64
     denominator: Int64
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedEdges:
+    """The same edges as a machine carries them; int64 (n,), modulo ``2**word_bits``.
+
+    The column on the edge's row r, counted from its first, is
+    ``start + r * step`` modulo ``2**word_bits``, its fraction bits dropped, read as signed.
+    """
+
+    start: Int64
+    step: Int64
+    word_bits: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,6 +256,30 @@ def _edges(begin: Int64, end: Int64, row: Int64, rows: Int64, grid: Grid) -> Edg
         column_step=np.where(used, column_step, zero),
         remainder_step=np.where(used, remainder_step, zero),
         denominator=height,
+    )
+
+
+def carry_edges(edges: Edges, *, column_bits: int, fraction_bits: int) -> CarriedEdges:
+    """Edges in fixed point: the column and the middle of its remainder's slot, and the step.
+
+    column + (remainder + 1/2) / denominator floors to the column, and so it does after
+    every step, as long as rounding moves it by less than half a slot.  Both numbers are
+    rounded half up at ``2**-fraction_bits``; ``column_bits`` are kept above the point.
+    ``column_bits`` + ``fraction_bits`` is at most 61.
+    """
+    word_bits = column_bits + fraction_bits
+
+    def rounded(quotient: Int64, doubled_remainder: Int64) -> Int64:
+        # floor(y + 1/2) = (floor(2y) + 1) >> 1, with floor(2y) from the part below the
+        # denominator and the part above it: below 2**61, and modulo 2**(word_bits + 1).
+        fraction = (doubled_remainder << fraction_bits) // edges.denominator
+        whole = fixed.wrap(quotient, column_bits) << (fraction_bits + 1)
+        return np.asarray(fixed.wrap((whole + fraction + 1) >> 1, word_bits))
+
+    return CarriedEdges(
+        start=rounded(edges.column, 2 * edges.remainder + 1),
+        step=rounded(edges.column_step, 2 * edges.remainder_step),
+        word_bits=word_bits,
     )
 
 

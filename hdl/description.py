@@ -96,10 +96,9 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
                fraction_bits=c.sub_bits),
         number("column", c.x_bits, "pixel column, and one past the last"),
         number("row", c.y_bits, "pixel row, and one past the last"),
-        number("edge_column", c.edge_column_bits, "first pixel column not left of an edge",
-               signed=True),
-        number("edge_remainder", c.edge_remainder_bits,
-               "what remains of an edge's column, over its denominator"),
+        number("edge", c.edge_word_bits, signed=True, fraction_bits=c.edge_fraction_bits,
+               meaning="first pixel column not left of an edge, exact on each of its rows; sums "
+               "wrap, the column on a row does not"),
         number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
         number("depth_plane", c.depth_plane_bits, signed=True, fraction_bits=fraction,
                meaning="depth as it is stepped, guard bits above; sums wrap, the value at a pixel "

@@ -90,7 +90,7 @@ def test_what_is_packed_comes_out_of_the_hardware_structure(name, data):
         assert field == number % (1 << bits)
 
 
-@pytest.mark.parametrize(("name", "words"), [("tiny", 23), ("small", 28), ("paper", 34)])
+@pytest.mark.parametrize(("name", "words"), [("tiny", 22), ("small", 28), ("paper", 34)])
 def test_words_of_a_command(name, words):
     configuration = CONFIGURATIONS[name]
     assert commands.command_words(configuration) == words
@@ -136,12 +136,11 @@ def test_triangles_from_set_up(name):
         for field in ("top", "middle", "bottom", "left", "right", "long_edge_left"):
             assert fields[field] == getattr(prepared, field)[index]
         for edge in commands.EDGES:
-            arrays = getattr(prepared, edge)
-            columns = 1 << configuration.edge_column_bits
-            assert fields[edge].column == arrays.column[index] % columns
-            assert fields[edge].column_step == arrays.column_step[index] % columns
-            for field in ("remainder", "remainder_step", "denominator"):
-                assert fields[edge][field] == getattr(arrays, field)[index]
+            carried = setup.carry_edges(getattr(prepared, edge),
+                                        column_bits=configuration.edge_column_bits,
+                                        fraction_bits=configuration.edge_fraction_bits)
+            for field in ("start", "step"):
+                assert fields[edge][field] == getattr(carried, field)[index]
         for part in ("start", "step_x", "step_y"):
             assert fields.planes.depth[part] == getattr(prepared.depth, part)[index]
         for channel, channel_name in enumerate(commands.CHANNELS):

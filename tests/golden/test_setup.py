@@ -9,9 +9,12 @@ from cardcage.golden import exact, fixed
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
 from cardcage.golden.setup import (
+    Edges,
+    carry_edges,
     color_word_bits,
     depth_word_bits,
     edge_column_bits,
+    edge_fraction_bits,
     edge_remainder_bits,
     prepare,
     scene_fraction_bits,
@@ -215,3 +218,63 @@ def test_empty_list():
 def test_bad_input(arguments, word):
     with pytest.raises(InputError, match=word):
         prepare(random_list(0), **arguments)
+
+
+def carried_columns(carried, triangle, rows, column_bits):
+    """The column on each of ``rows`` rows, as a machine that carries the edge finds it."""
+    fraction_bits = carried.word_bits - column_bits
+    start, step = int(carried.start[triangle]), int(carried.step[triangle])
+    return [fixed.floor_shift(fixed.to_signed(fixed.wrap(start + row * step, carried.word_bits),
+                                              carried.word_bits), fraction_bits)
+            for row in range(rows)]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_carried_edges_are_exact(seed):
+    """Every column of every edge, sliver or not, guard band included."""
+    display_list = random_list(seed)
+    x_shift, y_shift = SHIFTS[seed % len(SHIFTS)]
+    bits = edge_column_bits(display_list.coordinate_bits, display_list.sub_bits)
+    fraction_bits = edge_fraction_bits(edge_remainder_bits(display_list.coordinate_bits),
+                                       display_list.height)
+    prepared = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
+    rows = {"long": prepared.bottom - prepared.top, "upper": prepared.middle - prepared.top,
+            "lower": prepared.bottom - prepared.middle}
+    for name, counts in rows.items():
+        edges = getattr(prepared, name)
+        carried = carry_edges(edges, column_bits=bits, fraction_bits=fraction_bits)
+        for triangle, count in enumerate(counts.tolist()):
+            assert (carried_columns(carried, triangle, count, bits)
+                    == stepped_columns(edges, triangle, count, bits))
+
+
+def every_edge(height, column_bits):
+    """All remainders and steps of all denominators up to ``height``, some columns."""
+    return Edges(*(np.array(numbers) for numbers in zip(*(
+        (column, remainder, column_step, remainder_step, denominator)
+        for denominator in range(1, height + 1)
+        for remainder in range(denominator) for remainder_step in range(denominator)
+        for column, column_step in ((0, 0), (-3, 1), (2, -1))), strict=True)))
+
+
+@pytest.mark.parametrize("remainder_bits", range(1, 5))
+@pytest.mark.parametrize("rows", [1, 2, 3, 7, 8])
+def test_carried_edges_of_small_heights_exhaustively(remainder_bits, rows):
+    column_bits = 6
+    edges = every_edge((1 << remainder_bits) - 1, column_bits)
+    enough = edge_fraction_bits(remainder_bits, rows)
+    carried = carry_edges(edges, column_bits=column_bits, fraction_bits=enough)
+    for index in range(len(edges.column)):
+        assert (carried_columns(carried, index, rows, column_bits)
+                == stepped_columns(edges, index, rows, column_bits))
+
+
+def test_carried_edges_need_their_fraction_bits():
+    """With two bits less some edge goes wrong: the width is no luxury."""
+    rows, remainder_bits, column_bits = 8, 4, 6
+    edges = every_edge((1 << remainder_bits) - 1, column_bits)
+    fewer = edge_fraction_bits(remainder_bits, rows) - 2
+    carried = carry_edges(edges, column_bits=column_bits, fraction_bits=fewer)
+    assert any(carried_columns(carried, index, rows, column_bits)
+               != stepped_columns(edges, index, rows, column_bits)
+               for index in range(len(edges.column)))

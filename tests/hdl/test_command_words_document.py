@@ -50,8 +50,8 @@ def symbols(configuration):
             "d": configuration.depth_bits, "F": configuration.fraction_bits,
             "b": configuration.coordinate_bits, "X": configuration.x_bits,
             "Y": configuration.y_bits, "C": configuration.edge_column_bits,
-            "R": configuration.edge_remainder_bits, "D": configuration.depth_plane_bits,
-            "K": configuration.channel_plane_bits}
+            "R": configuration.edge_remainder_bits, "E": configuration.edge_word_bits,
+            "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits}
 
 
 def test_title_has_the_version():
@@ -83,7 +83,7 @@ CONFIGURATIONS = {
 def test_width_formulas(name):
     configuration = CONFIGURATIONS[name]
     values = symbols(configuration)
-    (width, height, s, d, fraction, b, x, y, c, r, depth, channel) = values.values()
+    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel) = values.values()
 
     def guard(v):
         g = 2
@@ -94,16 +94,17 @@ def test_width_formulas(name):
     assert b == (max(width, height) - 1).bit_length() + 2 + s
     assert (x, y) == (width.bit_length(), height.bit_length())
     assert (c, r) == (b - s + 1, b)
+    assert e == c + ((2**r - 1) * height).bit_length()
     assert depth == d + guard(d) + fraction
     assert channel == 8 + guard(8) + fraction
     colors = 24 if configuration.shading == "flat" else 9 * channel
-    planes = 8 + 3 * y + 2 * x + 1 + 3 * (2 * c + 3 * r)
+    planes = 8 + 3 * y + 2 * x + 1 + 6 * e
     vertices = 8 + 3 * (2 * b + d + 24)  # the longer body where few fraction bits are carried
     longest = max(planes + 3 * depth + colors, vertices)
     assert commands.command_words(configuration) == -(-longest // 32)
     if name == "tiny":
         text = DOCUMENT.read_text(encoding="utf-8")
-        assert f"    {planes} = 8 + 3·Y + 2·X + 1 + 3·(2·C + 3·R)\n" in text
+        assert f"    {planes} = 8 + 3·Y + 2·X + 1 + 6·E\n" in text
         assert f"= {commands.command_words(configuration)}\n" in text
 
 

@@ -80,7 +80,7 @@ def test_equivalent(tmp_path, name):
 @pytest.mark.parametrize(("name", "right", "wrong"), [
     ("id_increment", r"left \+ 3'h1", "left + 3'h3"),
     ("depth_test", r" < ", " <= "),
-    ("edge_walker", r">= ", "> "),
+    ("edge_walker", r"value \+ step", "value - step"),
     ("survey", r"<= (_\d+_);", r"<= ~\1;"),
     ("response_link", r"left__payload <=", "left__payload <= ~"),
     ("video_scan_generator", r"assign (\S+) = (\S+) \? (\S+) : (\S+);",

@@ -234,10 +234,12 @@ def test_own_responses_first_then_those_from_the_right():
 
 def rectangle(configuration, left, top, right, bottom):
     """A prepared triangle that covers every pixel of a rectangle: vertical edges."""
-    edge = {"remainder": 0, "column_step": 0, "remainder_step": 0, "denominator": 1}
+    def edge(column):
+        # Half a slot of the denominator 1: well inside the column.
+        return {"start": (2 * column + 1) << configuration.edge_fraction_bits - 1, "step": 0}
+
     return {"top": top, "middle": bottom, "bottom": bottom, "left": left, "right": right,
-            "long_edge_left": 1, "long": {"column": left, **edge},
-            "upper": {"column": right, **edge}, "lower": {"column": right, **edge},
+            "long_edge_left": 1, "long": edge(left), "upper": edge(right), "lower": edge(right),
             "planes": {"depth": {"start": 0, "step_x": 0, "step_y": 0},
                        "red": 1, "green": 2, "blue": 3}}
 

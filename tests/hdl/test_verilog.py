@@ -136,7 +136,7 @@ def test_description(texts):
     assert formats["depth_plane"]["fraction_bits"] == 50 and formats["depth_plane"]["signed"]
     assert formats["vertex_coordinate"]["integer_bits"] == configuration.coordinate_bits - 8
     assert facts["memories"] == [
-        {"module": "memory_15x1065", "words": 15, "bits": 1065, "instances": 4,
+        {"module": "memory_15x1062", "words": 15, "bits": 1062, "instances": 4,
          "contents_at_power_on": "unknown"},
         {"module": "memory_16384x72_lanes_3", "words": 16384, "bits": 72, "instances": 16,
          "contents_at_power_on": "unknown"}]

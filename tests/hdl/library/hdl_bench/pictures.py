@@ -6,7 +6,7 @@ from math import floor
 
 import numpy as np
 
-from cardcage.golden import setup
+from cardcage.golden import commands, setup
 from cardcage.golden.configuration import MachineConfiguration
 from cardcage.golden.display_list import DisplayList
 from cardcage.golden.video_timing import compact_timing
@@ -62,14 +62,13 @@ def random_triangles(seed, count, *, width, height, sub_bits=2, depth_bits=8, fl
 
 def prepared_values(configuration, prepared):
     """What the machine is told of each triangle, as nested dicts of non-negative integers."""
-    columns = 1 << configuration.edge_column_bits
+    edges = {name: setup.carry_edges(getattr(prepared, name),
+                                     column_bits=configuration.edge_column_bits,
+                                     fraction_bits=configuration.edge_fraction_bits)
+             for name in commands.EDGES}
 
-    def edge(edges, index):
-        return {"column": int(edges.column[index]) % columns,
-                "remainder": int(edges.remainder[index]),
-                "column_step": int(edges.column_step[index]) % columns,
-                "remainder_step": int(edges.remainder_step[index]),
-                "denominator": int(edges.denominator[index])}
+    def edge(carried, index):
+        return {"start": int(carried.start[index]), "step": int(carried.step[index])}
 
     def plane(planes, index):
         return {part: int(getattr(planes, part)[index]) for part in ("start", "step_x", "step_y")}
@@ -83,7 +82,7 @@ def prepared_values(configuration, prepared):
         values.append({
             **{name: int(getattr(prepared, name)[index])
                for name in ("top", "middle", "bottom", "left", "right", "long_edge_left")},
-            **{name: edge(getattr(prepared, name), index) for name in ("long", "upper", "lower")},
+            **{name: edge(carried, index) for name, carried in edges.items()},
             "planes": {"depth": plane(prepared.depth, index),
                        **dict(zip(("red", "green", "blue"), colors, strict=True))},
         })
