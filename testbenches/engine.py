@@ -57,7 +57,8 @@ class EngineRun:
 
     ``seconds`` is the simulation, files included; ``build_seconds`` what it took to compile a
     model before, 0 where none had to be.  ``engine`` is who ran it, ``notes`` what the user should
-    know of it.
+    know of it.  ``accepted``: int64, the cycle in which the machine took each command; None where
+    the engine does not tell.
     """
 
     responses: Sequence[tuple[ResponseKind, int, int]]
@@ -67,6 +68,7 @@ class EngineRun:
     build_seconds: float = 0.0
     engine: str = ""
     notes: tuple[str, ...] = ()
+    accepted: NDArray[np.int64] | None = None
 
 
 class Engine(Protocol):

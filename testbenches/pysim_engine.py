@@ -6,6 +6,7 @@ import random
 import time
 from contextlib import nullcontext
 
+import numpy as np
 from amaranth.hdl import Cat, Shape
 from amaranth.sim import Simulator
 
@@ -37,7 +38,7 @@ class _Run:
         self.progress = progress
         self.monitor = VideoMonitor(job.configuration)
         self.responses: list[tuple[ResponseKind, int, int]] = []
-        self.sent = 0
+        self.accepted: list[int] = []
         self.shown_cycle: int | None = None
         self.cycle = 0
 
@@ -51,7 +52,8 @@ class _Run:
         with recording:
             simulator.run()
         return EngineRun(self.responses, self.monitor.scans, self.cycle,
-                         time.perf_counter() - began, engine=PysimEngine.name)
+                         time.perf_counter() - began, engine=PysimEngine.name,
+                         accepted=np.array(self.accepted, np.int64))
 
     def _scramble(self, ctx) -> None:
         """Every memory word random, as after power-on."""
@@ -91,7 +93,7 @@ class _Run:
             self.cycle += 1
             offered, open_ = send.high, receive.high
             if taken and offered:
-                self.sent += 1
+                self.accepted.append(self.cycle)
                 next_word()
             else:
                 send.wait()
@@ -122,11 +124,12 @@ class _Run:
             self.progress(self.cycle, len(self.responses))
         if self.job.maximum_cycles is not None and self.cycle > self.job.maximum_cycles:
             raise TimeoutError(
-                f"no end after {self.cycle} cycles: {self.sent} of {len(self.job.commands)} "
-                f"commands taken, {len(self.responses)} of {self.job.responses} responses")
+                f"no end after {self.cycle} cycles: {len(self.accepted)} of "
+                f"{len(self.job.commands)} commands taken, {len(self.responses)} of "
+                f"{self.job.responses} responses")
 
     def _finished(self) -> bool:
-        if self.sent < len(self.job.commands) or len(self.responses) < self.job.responses:
+        if len(self.accepted) < len(self.job.commands) or len(self.responses) < self.job.responses:
             return False
         if self.shown_cycle is None:
             return True

@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..golden.commands import ResponseKind, command_words
 from ..golden.configuration import MachineConfiguration
@@ -30,6 +31,12 @@ FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3"
 #: program so much smaller that it runs twice as fast.
 ONCE = "`verilator_config\n" + "".join(
     f'no_inline -module "{name}"\n' for name in CARD_MODULES.values())
+
+
+#: A response in the results; a depth buffer has hundreds of thousands.
+_RESPONSE = np.dtype([("tag", "S1"), ("kind", "u1"), ("value", "<u4"), ("cycle", "<u8")])
+_RESPONSES_AT_ONCE = 1 << 14
+_KINDS = {int(kind): kind for kind in ResponseKind}
 
 
 class VerilatorEngine:
@@ -60,9 +67,9 @@ class VerilatorEngine:
             arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
                          _seed(job.stall_seed), job.maximum_cycles or 0]
             _watch([str(argument) for argument in arguments], progress)
-            responses, scans, cycles = _read(job, results.read_bytes())
+            responses, scans, cycles, accepted = _read(job, results.read_bytes())
         return EngineRun(responses, scans, cycles, time.perf_counter() - built,
-                         built - began if fresh else 0.0, engine=self.name)
+                         built - began if fresh else 0.0, engine=self.name, accepted=accepted)
 
     def build(self, configuration: MachineConfiguration,
               progress: Progress | None = None) -> tuple[Path, bool]:
@@ -134,31 +141,47 @@ def _watch(arguments: list[str], progress: Progress | None) -> None:
         raise RuntimeError(f"the compiled model failed with {process.returncode}: {failure}")
 
 
-def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]], list[Scan], int]:
-    """Responses, scans and cycles from the program's records."""
+def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]], list[Scan], int,
+                                             NDArray[np.int64]]:
+    """Responses, scans, cycles and when each command was taken, from the program's records."""
     configuration = job.configuration
     shape = (configuration.height, configuration.width, 3)
     pixels = configuration.height * configuration.width * 3
     responses: list[tuple[ResponseKind, int, int]] = []
     scans: list[Scan] = []
+    accepted = np.zeros(0, np.int64)
     place = 0
     while True:
         record = results[place:place + 1]
         if record == b"R":
-            kind, value, cycle = struct.unpack_from("<BIQ", results, place + 1)
-            responses.append((ResponseKind(kind), value, cycle))
-            place += 14
+            found = _responses(results, place)
+            responses += found
+            place += len(found) * _RESPONSE.itemsize
         elif record == b"S":
             [cycle] = struct.unpack_from("<Q", results, place + 1)
             picture = np.frombuffer(results, np.uint8, pixels, place + 9).reshape(shape)
             scans.append(Scan(cycle, picture))
             place += 9 + pixels
+        elif record == b"C":
+            [sent] = struct.unpack_from("<Q", results, place + 1)
+            accepted = np.frombuffer(results, "<i8", sent, place + 9)
+            place += 9 + 8 * sent
         else:
             break
-    why, cycles, sent = struct.unpack_from("<cQQ", results, place + 1)
+    why, cycles = struct.unpack_from("<cQ", results, place + 1)
     if why == b"V":
-        raise AssertionError(f"cycle {cycles}: {results[place + 18:].decode()}")
+        raise AssertionError(f"cycle {cycles}: {results[place + 10:].decode()}")
     if why != b"D":
-        raise TimeoutError(f"no end after {cycles} cycles: {sent} of {len(job.commands)} commands "
-                           f"taken, {len(responses)} of {job.responses} responses")
-    return responses, scans, cycles
+        raise TimeoutError(f"no end after {cycles} cycles: {len(accepted)} of {len(job.commands)} "
+                           f"commands taken, {len(responses)} of {job.responses} responses")
+    return responses, scans, cycles, accepted
+
+
+def _responses(results: bytes, place: int) -> list[tuple[ResponseKind, int, int]]:
+    """The responses that follow one another from ``place`` on, some thousand at most."""
+    count = min(_RESPONSES_AT_ONCE, (len(results) - place) // _RESPONSE.itemsize)
+    records = np.frombuffer(results, _RESPONSE, count, place)
+    others = np.flatnonzero(records["tag"] != b"R")
+    records = records[:others[0]] if len(others) else records
+    return list(zip(map(_KINDS.__getitem__, records["kind"].tolist()), records["value"].tolist(),
+                    records["cycle"].tolist(), strict=True))

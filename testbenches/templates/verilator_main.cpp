@@ -3,7 +3,8 @@
 // usage: machine COMMANDS RESULTS expected-responses memory-seed stall-seed maximum-cycles
 //
 // COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.
-// RESULTS gets records: 'R' kind value cycle, 'S' cycle and a picture, 'E' cycles and why.
+// RESULTS gets records: 'R' kind value cycle, 'S' cycle and a picture, 'C' the number of commands
+// taken and the cycle of each, 'E' cycles and why.
 // Progress goes to the standard output: cycles and responses, now and then.
 //
 // With the single argument "bare" and a number of cycles it only toggles the clock.
@@ -155,14 +156,17 @@ int main(int argc, char** argv) {
 
     Pace send(stall_seed, 0), receive(stall_seed, 1);
     Monitor monitor(results);
-    uint64_t sent = 0, received = 0, cycle = 0, shown_cycle = 0;
+    std::vector<uint64_t> accepted;
+    accepted.reserve(commands);
+    uint64_t received = 0, cycle = 0, shown_cycle = 0;
     bool shown = false;
     char why = 'M';  // the maximum was reached
     const char* reason = "";
 
     const auto next_command = [&] {
-        if (sent == commands) { send.stop(); return; }
-        std::memcpy(&machine.PORT(commands, payload), &words[sent * COMMAND_WORDS], 4 * COMMAND_WORDS);
+        if (accepted.size() == commands) { send.stop(); return; }
+        std::memcpy(&machine.PORT(commands, payload), &words[accepted.size() * COMMAND_WORDS],
+                    4 * COMMAND_WORDS);
         send.go();
     };
     next_command();
@@ -185,12 +189,12 @@ int main(int argc, char** argv) {
                 reason = monitor.failure();
                 break;
             }
-            finished = sent + taken == commands && received + given >= expected
+            finished = accepted.size() + taken == commands && received + given >= expected
                        && (!shown || monitor.shown_since(shown_cycle));
         }
         machine.clk = 1;
         machine.eval();
-        if (taken) { ++sent; next_command(); } else send.wait();
+        if (taken) { accepted.push_back(cycle); next_command(); } else send.wait();
         if (given) {
             const uint8_t kind = response & 0xff;
             const uint32_t value = static_cast<uint32_t>(response >> 8);
@@ -209,10 +213,13 @@ int main(int argc, char** argv) {
         }
         if (finished) { why = 'D'; break; }
     }
+    const uint64_t sent = accepted.size();
+    std::fputc('C', results);
+    std::fwrite(&sent, sizeof sent, 1, results);
+    std::fwrite(accepted.data(), sizeof sent, sent, results);
     std::fputc('E', results);
     std::fputc(why, results);
     std::fwrite(&cycle, sizeof cycle, 1, results);
-    std::fwrite(&sent, sizeof sent, 1, results);
     std::fputs(reason, results);
     std::fclose(results);
     machine.final();

@@ -52,6 +52,8 @@ def test_clock_for_clock_the_same_as_pysim(engine):
     compiled, interpreted = engine.run(job), PysimEngine().run(job)
     assert compiled.cycles == interpreted.cycles
     assert compiled.responses == interpreted.responses  # kind, value and clock of each
+    np.testing.assert_array_equal(compiled.accepted, interpreted.accepted)
+    assert len(compiled.accepted) == len(job.commands)
     assert [scan.cycle for scan in compiled.scans] == [scan.cycle for scan in interpreted.scans]
     for one, other in zip(compiled.scans[1:], interpreted.scans[1:], strict=True):
         np.testing.assert_array_equal(one.picture, other.picture)
