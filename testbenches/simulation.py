@@ -131,7 +131,7 @@ def frame_job(
         memory_seed=memory_seed,
         stall_seed=stall_seed,
         waveform=waveform,
-        maximum_cycles=_bound(configuration, words),
+        maximum_cycles=cycle_bound(configuration, words),
     )
 
 
@@ -149,7 +149,7 @@ def draws_as_coarser(configuration: MachineConfiguration, fraction_bits: int) ->
         for name in ("depth_plane_bits", "channel_plane_bits"))
 
 
-def _bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
+def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
     """More cycles than any frame can take: beyond, the machine hangs.
 
     Every triangle covers the screen, every pixel costs a scan slot, a read and a write; then
@@ -176,7 +176,7 @@ def _interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulatio
     units = values[ResponseKind.UNITS][0]
     return Simulation(
         video=run.scans[-1].picture,
-        depth=_depth_image(interlace, domains, values[ResponseKind.DEPTH]),
+        depth=depth_image(interlace, domains, values[ResponseKind.DEPTH]),
         interlace=interlace,
         work=[Work(first, count, fragments, busy) for (first, count), fragments, busy in
               zip(domains, values[ResponseKind.FRAGMENTS], values[ResponseKind.BUSY],
@@ -195,7 +195,7 @@ def _interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulatio
     )
 
 
-def _depth_image(interlace: Interlace, domains: Sequence[tuple[int, int]],
+def depth_image(interlace: Interlace, domains: Sequence[tuple[int, int]],
                  words: Sequence[int]) -> NDArray[np.int64]:
     """Depth words, in the order of the read-back, put where their pixels are."""
     units = np.concatenate([np.arange(first, first + count) for first, count in domains])
