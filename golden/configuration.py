@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal
 
 from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, parse_cards
 from .display_list import DisplayList, coordinate_bits
@@ -24,6 +24,7 @@ from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
+MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 CHANNEL_BITS = COLOR_BITS
 
 
@@ -43,6 +44,10 @@ class MachineConfiguration:
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
     ``timing``            blanking and sync of a scan; None means the standard one for the size
     ``allow_orphans``     accept memory units left of every processing element
+    ``setup``             ``"host"``: the host sends prepared triangles; ``"hardware"``: the
+                          controller also takes vertices and prepares them itself
+    ``setup_interval``    clocks that set-up in hardware may take for a division: 1 is a stage for
+                          each step, ``MAXIMUM_SETUP_INTERVAL`` one stage for all
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -69,6 +74,8 @@ class MachineConfiguration:
     clocks_per_pixel: int = 4
     timing: VideoTiming = field(default=None)  # type: ignore[assignment]
     allow_orphans: bool = False
+    setup: Literal["host", "hardware"] = "host"
+    setup_interval: int = 1
     coordinate_bits: int = 0
     edge_column_bits: int = 0
     edge_remainder_bits: int = 0
@@ -89,12 +96,13 @@ class MachineConfiguration:
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
             ("clocks_per_pixel", 2, 256),
-            ("depth_integer_bits", 0, 64),
-            ("channel_integer_bits", 0, 64),
+            ("setup_interval", 1, MAXIMUM_SETUP_INTERVAL),
         ):
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
             raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")
+        if self.setup not in ("host", "hardware"):
+            raise InputError(f"setup: {self.setup!r} is neither host nor hardware")
         for name, most in self._widest().items():
             check_whole(name, getattr(self, name), 0, most)
             fix(name, getattr(self, name) or most)
