@@ -137,23 +137,17 @@ def exact_fraction_bits(
 
 
 def guard_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
-    """Bits above a value's own that tell too low from too high: at least two.
+    """Bits above a value's own that tell too low from too high: the fewest, at least two.
 
-    At a covered pixel the value lies in [0, 2**value_bits); carried, it is off
-    by at most E = (1 + extent) * 2**-(F+1) + 1, the one being the rounding and
-    its bias.  Read as a signed number of ``value_bits + guard`` bits it must
-    neither fall out at the bottom, E < 2**(value_bits+guard-1), nor at the
-    top, 2**value_bits + E < 2**(value_bits+guard-1).
+    At a covered pixel the value lies in [0, 2**value_bits).  Carried, it is off by at
+    most B = (1 + extent) * 2**-(F+1), so once floored by at most ceil(B).  Read as a
+    signed number of ``value_bits + guard`` bits it must not fall out at the bottom,
+    ceil(B) <= 2**(value_bits+guard-1), nor at the top, where all of
+    2**value_bits - 1 + ceil(B) is less than that.
     """
     check_fraction_bits(fraction_bits)
-    # Everything times 2**(F+1), to stay in integers.
-    error = 1 + extent + (2 << fraction_bits)
-    guard = 2
-    while ((1 << value_bits) << (fraction_bits + 1)) + error >= (
-        1 << (value_bits + guard - 1)
-    ) << (fraction_bits + 1):
-        guard += 1
-    return guard
+    error = ceil_divide(1 + extent, 2 << fraction_bits)
+    return ((1 << value_bits) - 1 + error).bit_length() + 1 - value_bits
 
 
 def check_fraction_bits(fraction_bits: int) -> None:

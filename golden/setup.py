@@ -304,7 +304,7 @@ class _PlaneSolver:
         # Depth and coordinate differences, one product and a sum: 33 + 23 + 1 bits.
         slope_x = (rise1 * self._y2 - rise2 * self._y1).astype(object)
         slope_y = (rise2 * self._x1 - rise1 * self._x2).astype(object)
-        # From here on up to 2b + d + 4 + F bits: Python ints.
+        # Numerators of 2b + d + 2 bits, doubled and scaled 2b + d + 3 + F: Python ints.
         area = self._area
         numerator = (value[:, 0].astype(object) * area
                      + slope_x * self._offset_x + slope_y * self._offset_y)  # fmt: skip

@@ -13,7 +13,8 @@ from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.grid import Grid
 from cardcage.golden.setup import (
     Planes,
-    carried_word_bits,
+    color_word_bits,
+    depth_word_bits,
     edge_column_bits,
     edge_remainder_bits,
     prepare,
@@ -236,7 +237,7 @@ def test_widths_of_the_edge_walker(n, s):
 
 
 @pytest.mark.parametrize("interpolant", ["depth", "color"])
-@pytest.mark.parametrize("fraction_bits", [0, 3, 5, 7])
+@pytest.mark.parametrize("fraction_bits", [0, 1, 3, 5, 7])
 def test_width_of_carried_words(interpolant, fraction_bits):
     """One guard bit less and the largest value, carried too high, wraps instead of saturating.
 
@@ -244,7 +245,7 @@ def test_width_of_carried_words(interpolant, fraction_bits):
     Both increments are rounded up: half a unit too high for each pixel right or down.
     """
     size, unit = 512, 256
-    limit, value_bits = (255, 8) if interpolant == "color" else (2**24 - 2, 24)
+    limit = 255 if interpolant == "color" else 2**24 - 2
     beyond, below = 768 * unit, 256 * unit
     values = np.array([limit, limit, limit - 2 ** (7 - fraction_bits)])
     display_list = listed([[[0, 0], [beyond, beyond], [0, below]]],
@@ -252,8 +253,11 @@ def test_width_of_carried_words(interpolant, fraction_bits):
                           color=(values if interpolant == "color" else values * 0)
                           .astype(np.uint8)[None, :, None].repeat(3, axis=2))
     prepared = prepare(display_list, fraction_bits=fraction_bits)
-    planes = prepared.depth if interpolant == "depth" else prepared.color[0]
-    assert planes.word_bits == carried_word_bits(value_bits, fraction_bits, 2 * size - 2)
+    if interpolant == "depth":
+        planes, word_bits = prepared.depth, depth_word_bits(24, fraction_bits, size, size)
+    else:
+        planes, word_bits = prepared.color[0], color_word_bits(fraction_bits, size, size)
+    assert planes.word_bits == word_bits
     narrow = Planes(*(fixed.wrap(part, planes.word_bits - 1)
                       for part in (planes.start, planes.step_x, planes.step_y)),
                     planes.word_bits - 1)  # fmt: skip

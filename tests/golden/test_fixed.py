@@ -98,15 +98,14 @@ def test_exact_fraction_bits_of_arrays():
 @pytest.mark.parametrize("fraction_bits", [0, 1, 5, 20, 64])
 @pytest.mark.parametrize("extent", [0, 1, 14, 1022, 8190])
 def test_guard_bits_are_the_fewest_from_two(value_bits, fraction_bits, extent):
-    error = Fraction(1 + extent, 2 ** (fraction_bits + 1)) + 1
+    error = ceil(Fraction(1 + extent, 2 ** (fraction_bits + 1)))
 
     def enough(guard):
         half = 2 ** (value_bits + guard - 1)
-        return -error > -half and 2**value_bits + error < half
+        return -error >= -half and 2**value_bits - 1 + error < half
 
     guard = fixed.guard_bits(value_bits, fraction_bits, extent)
-    assert guard >= 2 and enough(guard)
-    assert guard == 2 or not enough(guard - 1)
+    assert guard >= 2 and enough(guard) and not enough(guard - 1)
 
 
 @pytest.mark.parametrize("fraction_bits", [-1, 65, 2.0, True, None])

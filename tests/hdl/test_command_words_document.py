@@ -1,6 +1,7 @@
 """``docs/command-words.md`` says what the code does."""
 
 import re
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -86,8 +87,8 @@ def test_width_formulas(name):
     (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel) = values.values()
 
     def guard(v):
-        g = 2
-        while 2**v + (width + height - 1) / 2 ** (fraction + 1) + 1 >= 2 ** (v + g - 1):
+        g = 0
+        while 2**v + ceil((width + height - 1) / 2 ** (fraction + 1)) > 2 ** (v + g - 1):
             g += 1
         return g
 
