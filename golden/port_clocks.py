@@ -1,0 +1,107 @@
+"""Clocks that the spans of a processing element take at the ports of its memory units.
+
+With two ports a fragment takes one clock, seen or not.  With one port the read, the
+write of a visible fragment and the scan's slots share it:
+
+* all in one unit, a fragment takes a clock for the read and one for the write;
+* units in turn along a row, the writes to one fall into the reads from the other;
+* units in turn from row to row, the writes of a row's last fragments, as many as lie
+  between read and write, fall into the next row.
+
+A slot of the scan delays whatever the unit would have done.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .configuration import MachineConfiguration
+from .coverage import Triangles
+from .display_list import DisplayList
+from .exact import fragments
+from .lattice_spans import LatticeSpans
+
+Float64 = NDArray[np.float64]
+Int64 = NDArray[np.int64]
+
+#: From a fragment's read to its write.
+WRITE_LATENCY = 3
+
+
+class PortClocks:
+    """The clocks of all spans of a list, asked for in drawing order."""
+
+    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
+                 triangles: Triangles) -> None:
+        self._configuration = configuration
+        self._display_list = display_list
+        self._triangles = triangles
+        self._two_ports = getattr(configuration, "memory_ports", 1) == 2
+        interlace = configuration.interlace
+        self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
+
+    def of(self, spans: LatticeSpans) -> Float64:
+        """float64 (n,): clocks of each span; the next call must go on where this one ends."""
+        length = spans.length.astype(np.float64)
+        if self._two_ports:
+            return length
+        interlace, units = self._configuration.interlace, self._configuration.units
+        written = self._written(spans)
+        clocks = length.copy()
+        in_turn = interlace.x_unit_bits > spans.x_bits
+        alone = units == self._configuration.processing_elements
+        if alone:
+            clocks += written
+        else:
+            stalls = WRITE_LATENCY * ((spans.length - 1) // WRITE_LATENCY)
+            clocks += np.where(in_turn, 0, stalls * written / spans.length)
+        return clocks * self._scan_factor()
+
+    def _scan_factor(self) -> float:
+        """How much longer it takes at a port that the scan uses too, while it shows the picture."""
+        interlace = self._configuration.interlace
+        group = interlace.x_unit_bits + interlace.x_shift
+        slots = 1 / (self._configuration.clocks_per_pixel << group)
+        lines = 1 / (1 << interlace.y_unit_bits)  # those that the unit has pixels of
+        return lines / (1 - slots) + 1 - lines
+
+    def _written(self, spans: LatticeSpans) -> Int64:
+        """int64 (n,): visible fragments of each span, as the pixels are drawn one after another."""
+        interlace = self._configuration.interlace
+        kept = self._triangles.primitive[spans.begin:spans.end]
+        part = replace(self._display_list, **{
+            name: getattr(self._display_list, name)[kept]
+            for name in ("position", "depth", "color")})
+        drawn = fragments(part, shading="flat", x_shift=interlace.x_shift,
+                          y_shift=interlace.y_shift)
+        pixel = drawn.y.astype(np.int64) * interlace.width + drawn.x
+        visible = self._visible(pixel, drawn.depth)
+        # Fragments come in the order of the whole spans and of the columns in each.
+        whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
+        written = np.zeros(len(spans.source), np.int64)
+        for bits in np.unique(spans.x_bits).tolist():
+            key = (whole << bits) | (drawn.x & ((1 << bits) - 1))
+            counts = np.bincount(key, visible, len(spans.whole) << bits).astype(np.int64)
+            here = np.flatnonzero(spans.x_bits == bits)
+            written[here] = counts[(spans.source[here] << bits) | spans.x_offset[here]]
+        return written
+
+    def _visible(self, pixel: Int64, depth: Int64) -> NDArray[np.bool_]:
+        """Which fragments are nearer than all before them on their pixel; keeps the nearest."""
+        order = np.argsort(pixel, kind="stable")
+        sorted_pixel, sorted_depth = pixel[order], depth[order]
+        first = np.ones(len(order), bool)
+        first[1:] = sorted_pixel[1:] != sorted_pixel[:-1]
+        # Lower by more than any depth from pixel to pixel: the running minimum begins anew there.
+        base = np.cumsum(first) << 33
+        running = np.minimum.accumulate(sorted_depth - base) + base
+        before = self._nearest[sorted_pixel]
+        before[1:] = np.where(first[1:], before[1:], np.minimum(before[1:], running[:-1]))
+        last = np.roll(first, -1)
+        self._nearest[sorted_pixel[last]] = np.minimum(before, sorted_depth)[last]
+        visible = np.empty(len(order), bool)
+        visible[order] = sorted_depth < before
+        return visible
