@@ -55,6 +55,7 @@ class MachineConfiguration:
     ``coordinate_bits``      of a signed vertex coordinate
     ``edge_column_bits``     of a signed column on an edge's own rows
     ``edge_remainder_bits``  of an edge's height, in sub-pixel units
+    ``edge_fraction_bits``   of a carried edge: as many as make its column exact on every row
     ``depth_integer_bits``   of carried depth, its sign included
     ``channel_integer_bits`` of a carried colour channel, likewise
 
@@ -79,6 +80,7 @@ class MachineConfiguration:
     coordinate_bits: int = 0
     edge_column_bits: int = 0
     edge_remainder_bits: int = 0
+    edge_fraction_bits: int = 0
     depth_integer_bits: int = 0
     channel_integer_bits: int = 0
 
@@ -106,6 +108,9 @@ class MachineConfiguration:
         for name, most in self._widest().items():
             check_whole(name, getattr(self, name), 0, most)
             fix(name, getattr(self, name) or most)
+        most = edge_fraction_bits(self.edge_remainder_bits, self.height)
+        check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
+        fix("edge_fraction_bits", self.edge_fraction_bits or most)
         if not self.allow_orphans:
             check_cards(self.cards)
         if not self.words:
@@ -177,11 +182,6 @@ class MachineConfiguration:
     @property
     def address_bits(self) -> int:
         return max(1, (self.words - 1).bit_length())
-
-    @property
-    def edge_fraction_bits(self) -> int:
-        """Of a carried edge: as many as make its column exact on every row of the screen."""
-        return edge_fraction_bits(self.edge_remainder_bits, self.height)
 
     @property
     def edge_word_bits(self) -> int:

@@ -37,6 +37,7 @@ class SceneNeeds:
     ``coordinates``          least and greatest vertex coordinate, in sub-pixel units
     ``columns``              least and greatest column on a row of an edge
     ``edge_height``          of the highest edge, in sub-pixel units
+    ``edge_rows_height``     the greatest product of an edge's height and the rows it has
     ``greatest_depth``       of a vertex
     ``greatest_channel``     of a vertex's colour
     ``extent``               the largest triangle's, right and down together, in pixels
@@ -53,6 +54,7 @@ class SceneNeeds:
     coordinates: tuple[int, int]
     columns: tuple[int, int]
     edge_height: int
+    edge_rows_height: int
     greatest_depth: int
     greatest_channel: int
     extent: int
@@ -73,6 +75,11 @@ class SceneNeeds:
     @property
     def edge_remainder_bits(self) -> int:
         return max(1, self.edge_height.bit_length())
+
+    @property
+    def edge_fraction_bits(self) -> int:
+        """``setup.edge_fraction_bits`` for the edge that needs the most."""
+        return max(1, self.edge_rows_height.bit_length())
 
     def error(self, fraction_bits: int) -> int:
         """The most by which a stored depth or channel is off."""
@@ -97,7 +104,7 @@ class SceneNeeds:
 def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:
     """The needs of ``display_list`` at the resolution ``Grid.of`` gives."""
     outlines = outline(display_list, Grid.of(display_list, x_shift, y_shift))
-    boxes = outlines.boxes
+    boxes, edges = outlines.boxes, _used_edges(outlines)
     extent = boxes.extent
     # Below 2**44 * 2**13.
     product = boxes.double_area * (1 + extent)
@@ -111,9 +118,9 @@ def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0
         flat=display_list.flat,
         sub_bits=display_list.sub_bits,
         coordinates=_ends(position),
-        columns=_columns(outlines),
-        edge_height=max(int(edges.denominator.max(initial=1))
-                        for edges in (outlines.long, outlines.upper, outlines.lower)),
+        columns=_ends(np.concatenate([columns for edge in edges for columns in edge.ends()])),
+        edge_height=max(int(edge.height.max(initial=1)) for edge in edges),
+        edge_rows_height=max(int((edge.height * edge.rows).max(initial=1)) for edge in edges),
         greatest_depth=int(display_list.depth[boxes.primitive].max(initial=0)),
         greatest_channel=int(display_list.color[boxes.primitive].max(initial=0)),
         extent=int(extent.max(initial=0)),
@@ -125,26 +132,42 @@ def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0
     )
 
 
-def _columns(outlines: Outlines) -> tuple[int, int]:
-    """The least and the greatest column of an edge on its rows: each lies on a first or last."""
+@dataclass(frozen=True, eq=False)
+class _UsedEdges:
+    """The long, upper or lower edges that have rows; int64 (n,) each."""
+
+    edges: Edges
+    used: Int64
+    rows: Int64
+
+    @property
+    def height(self) -> Int64:
+        return self.edges.denominator[self.used]
+
+    def ends(self) -> tuple[Int64, Int64]:
+        """Columns on the first and on the last row: no other row's are smaller or greater."""
+        column, step, remainder, remainder_step = (
+            part[self.used] for part in (self.edges.column, self.edges.column_step,
+                                         self.edges.remainder, self.edges.remainder_step))
+        more = self.rows - 1
+        # Both products below 2**37: a step is at most the guard band, the rows the screen.
+        carried = (remainder + remainder_step * more) // self.height
+        return column, np.asarray(column + step * more + carried)
+
+
+def _used_edges(outlines: Outlines) -> list[_UsedEdges]:
     boxes, middle = outlines.boxes, outlines.middle
-    ends: list[Int64] = []
+    found = []
     for edges, rows in ((outlines.long, boxes.bottom - boxes.top),
                         (outlines.upper, middle - boxes.top),
                         (outlines.lower, boxes.bottom - middle)):  # fmt: skip
-        used = rows > 0
-        ends += [edges.column[used], _last_column(edges, rows - 1)[used]]
-    return _ends(np.concatenate(ends))
+        used = np.flatnonzero(rows > 0)
+        found.append(_UsedEdges(edges, used, rows[used]))
+    return found
 
 
 def _ends(values: NDArray[Any]) -> tuple[int, int]:
     return (int(values.min()), int(values.max())) if values.size else (0, 0)
-
-
-def _last_column(edges: Edges, steps: Int64) -> Int64:
-    # Both products below 2**37: a step is at most the guard band, the steps at most the screen.
-    remainder = edges.remainder + edges.remainder_step * steps
-    return np.asarray(edges.column + edges.column_step * steps + remainder // edges.denominator)
 
 
 def _signed_bits(low: int, high: int) -> int:
@@ -197,6 +220,7 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
         ("coordinate_bits", needs.coordinate_bits),
         ("edge_column_bits", needs.edge_column_bits),
         ("edge_remainder_bits", needs.edge_remainder_bits),
+        ("edge_fraction_bits", needs.edge_fraction_bits),
         ("depth_plane_bits", needs.depth_integer_bits(bits) + bits),
         ("channel_plane_bits", needs.channel_integer_bits(bits) + bits),
     ):
