@@ -13,9 +13,11 @@ from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.grid import Grid
 from cardcage.golden.setup import (
     Planes,
+    carry_edges,
     color_word_bits,
     depth_word_bits,
     edge_column_bits,
+    edge_fraction_bits,
     edge_remainder_bits,
     prepare,
     scene_fraction_bits,
@@ -188,6 +190,19 @@ def test_widths_of_area_edge_and_plane_numerator(n, s, d):
     assert signed_bits(numerators) == 2 * bits + d + 3
 
 
+def long_edge(triangle, size, sub_bits):
+    """The edge from the first vertex down to the last, on every row, and its columns, rational."""
+    prepared = prepare(listed([triangle], [[0, 0, 0]], size, sub_bits=sub_bits), fraction_bits=0)
+    assert (prepared.top[0], prepared.bottom[0]) == (0, size)
+    (x0, y0), _, (x1, y1) = triangle
+    unit = 1 << sub_bits
+    true = []
+    for row in range(size):
+        intercept = x0 + Fraction((row * unit + unit // 2 - y0) * (x1 - x0), y1 - y0)
+        true.append(-floor(-(intercept - unit // 2) / unit))
+    return prepared.long, true
+
+
 def columns_of(edges, rows, column_bits, remainder_bits, sum_bits):
     """The column on each row of the first triangle's edge, in registers of those widths."""
     step = fixed.wrap(int(edges.column_step[0]), column_bits)
@@ -204,7 +219,7 @@ def columns_of(edges, rows, column_bits, remainder_bits, sum_bits):
 
 
 @pytest.mark.parametrize(("n", "s"), [(3, 2), (4, 4), (5, 8), (9, 8)])
-def test_widths_of_the_edge_walker(n, s):
+def test_widths_of_quotient_and_remainder(n, s):
     """b - s + 1 bits of column, b of remainder, b + 1 of their sum: none can be narrower."""
     size = 1 << n
     bits, corners = whole_range(n, s)
@@ -214,26 +229,43 @@ def test_widths_of_the_edge_walker(n, s):
               "sum_bits": edge_remainder_bits(bits) + 1}
     assert list(widths.values()) == [bits - s + 1, bits, bits + 1]
     failed = set()
-    # The long edge is that from the first vertex to the last.  One at the right end of the
-    # range, all but straight down, its remainders near its height; and a slanting one.
+    # One at the right end of the range, all but straight down, its remainders near its
+    # height; and a slanting one.
     for triangle in ([[high, low], [low, high], [high - 1, high]],
                      [[low, low], [low, high], [high - (high - low) // 3, high]]):
-        prepared = prepare(listed([triangle], [[0, 0, 0]], size, sub_bits=s),
-                           fraction_bits=0)
-        rows = int(prepared.bottom[0] - prepared.top[0])
-        assert rows == size
-        (x0, y0), (x1, y1) = triangle[0], triangle[2]
-        unit = 1 << s
-        true = []
-        for row in range(size):
-            intercept = x0 + Fraction((row * unit + unit // 2 - y0) * (x1 - x0), y1 - y0)
-            true.append(-floor(-(intercept - unit // 2) / unit))
-        assert list(columns_of(prepared.long, rows, **widths)) == true
+        edges, true = long_edge(triangle, size, s)
+        assert list(columns_of(edges, size, **widths)) == true
         for name in widths:
             narrower = widths | {name: widths[name] - 1}
-            if list(columns_of(prepared.long, rows, **narrower)) != true:
+            if list(columns_of(edges, size, **narrower)) != true:
                 failed.add(name)
     assert failed == set(widths)
+
+
+@pytest.mark.parametrize(("n", "s", "ends"), [(4, 4, (-123, 441)), (5, 8, (1207, -12248)),
+                                              (9, 8, (11145, 132687))])
+def test_widths_of_carried_edges(n, s, ends):
+    """Edges as high as the range: of the column and of the fraction, no bit can be spared.
+
+    The second edge was searched for: on the last row its error exceeds what is left of its slot.
+    """
+    size = 1 << n
+    bits, corners = whole_range(n, s)
+    low, high = corners[0][0], corners[3][0]
+    column_bits = edge_column_bits(bits, s)
+    fraction_bits = edge_fraction_bits(edge_remainder_bits(bits), size)
+    assert fraction_bits == bits + n
+    failed = []
+    for x0, x1 in ((high, high - 1), ends):
+        edges, true = long_edge([[x0, low], [low, high], [x1, high]], size, s)
+        for less in ((0, 0), (1, 0), (0, 1)):
+            columns, fractions = column_bits - less[0], fraction_bits - less[1]
+            carried = carry_edges(edges, column_bits=columns, fraction_bits=fractions)
+            words = [int(carried.start[0]) + row * int(carried.step[0]) for row in range(size)]
+            stepped = [fixed.to_signed(word, columns + fractions) >> fractions for word in words]
+            if stepped != true:
+                failed.append(((x0, x1), less))
+    assert failed == [((high, high - 1), (1, 0)), (ends, (0, 1))]
 
 
 @pytest.mark.parametrize("interpolant", ["depth", "color"])
