@@ -98,13 +98,21 @@ class CyclePrediction:
         """No machine of these parts is faster."""
         return max(self.broadcast_bound, float(self.element_bound.max(initial=0)))
 
+    @property
+    def binding(self) -> str:
+        """What sets the bound: ``broadcast`` or ``busiest element``."""
+        element = float(self.element_bound.max(initial=0))
+        return "broadcast" if self.broadcast_bound >= element else "busiest element"
+
 
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
                    pipeline: Pipeline = PIPELINE,
-                   fifo_depths: Sequence[int] | None = None) -> list[CyclePrediction]:
+                   fifo_depths: Sequence[int] | None = None,
+                   after: DisplayList | None = None) -> list[CyclePrediction]:
     """The clocks for ``display_list``, for each depth of the FIFOs; by default the machine's own.
 
-    Precision does not matter to it.
+    ``after`` was drawn before on the same picture: it hides what lies behind.  Precision does
+    not matter to the clocks.
     """
     interlace = configuration.interlace
     triangles = Triangles.of(display_list,
@@ -112,7 +120,7 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     blocks = lattice_blocks(configuration)
     elements = configuration.processing_elements
     depths = [configuration.fifo_depth] if fifo_depths is None else list(fifo_depths)
-    ports = PortClocks(configuration, display_list, triangles)
+    ports = PortClocks(configuration, display_list, triangles, after)
     broadcast = _Broadcast(elements, depths, pipeline, len(triangles))
     bound = np.zeros((2, elements))
     for spans in lattice_spans(triangles, blocks):

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .exact import fragments
+from .exact import draw, fragments
 from .lattice_spans import LatticeSpans
 
 Float64 = NDArray[np.float64]
@@ -32,16 +32,19 @@ WRITE_LATENCY = 3
 
 
 class PortClocks:
-    """The clocks of all spans of a list, asked for in drawing order."""
+    """The clocks of all spans of a list, asked for in drawing order; ``after`` was drawn before."""
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
-                 triangles: Triangles) -> None:
+                 triangles: Triangles, after: DisplayList | None = None) -> None:
         self._configuration = configuration
         self._display_list = display_list
         self._triangles = triangles
         self._two_ports = getattr(configuration, "memory_ports", 1) == 2
         interlace = configuration.interlace
         self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
+        if after is not None and not self._two_ports:
+            self._nearest = draw(after, shading="flat", x_shift=interlace.x_shift,
+                                 y_shift=interlace.y_shift).depth.astype(np.int64).reshape(-1)
 
     def of(self, spans: LatticeSpans) -> Float64:
         """float64 (n,): clocks of each span; the next call must go on where this one ends."""

@@ -22,11 +22,13 @@ from ..golden import commands
 from ..golden.cards import domains
 from ..golden.commands import Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
+from ..golden.errors import InputError
 from ..golden.exact import depth_complexity
 from .bench_cases import CaseLists, Order
 from .compare import compare
 from .engine import Engine, EngineRun, Job, Progress
 from .simulation import MachineError, Simulation, Work, cycle_bound, depth_image, frame_commands
+from .verilator_tool import ToolMissingError
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
 _READ_DEPTH = commands.command(Opcode.READ_DEPTH)
@@ -109,11 +111,13 @@ def measure(configuration: MachineConfiguration, cases: Sequence[CaseLists], eng
     """Draw every case, compare every pixel and every depth; what it took, in the same order.
 
     Raises ``DifferentError`` where a picture or a number of fragments is not the golden one,
-    ``MachineError`` where the machine does not deliver.
+    ``MachineError`` where the machine does not deliver, ``InputError`` where the engine cannot run.
     """
     job, frames = _job(configuration, cases)
     try:
         run = engine.run(job, progress)
+    except ToolMissingError as missing:
+        raise InputError(f"--engine {engine.name}: {missing}; or use --engine model") from None
     except (TimeoutError, AssertionError) as error:
         raise MachineError(f"the machine failed: {error}") from error
     responses = _by_kind(run)

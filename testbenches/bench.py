@@ -1,0 +1,85 @@
+"""Cases on machines: measured in simulation, predicted by the cycle model, beside the peers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ..golden.cycle_model import predict_cycles
+from .bench_cases import CaseLists, Order, case_lists
+from .bench_machines import BenchMachine
+from .bench_run import Measurement, measure
+from .engine import Engine
+
+#: Cases that share a simulation: more save boots, and keep more depths at once.
+_TOGETHER = 4
+
+
+@dataclass(frozen=True)
+class BenchRow:
+    """One case on one machine.
+
+    ``measured``    None where only the model was asked
+    ``predicted``   T(2n) - T(n) by the cycle model
+    ``bound``       clocks below which n triangles cannot come, by broadcast or the busiest element
+    ``binding``     which of the two it is
+    """
+
+    machine: BenchMachine
+    case: str
+    order: Order
+    triangles: int
+    measured: Measurement | None
+    predicted: float
+    bound: float
+    binding: str
+
+    @property
+    def cycles(self) -> float:
+        """Sustained cycles for n triangles: measured where they were, else predicted."""
+        return self.predicted if self.measured is None else self.measured.sustained_cycles
+
+    @property
+    def prediction_error(self) -> float | None:
+        """Relative to the measured cycles."""
+        if self.measured is None:
+            return None
+        return self.predicted / self.measured.sustained_cycles - 1
+
+    @property
+    def key(self) -> str:
+        """What names this row in a baseline."""
+        return f"{self.machine.label}; {self.case}; {self.order}"
+
+
+def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order],
+          engine: Engine | None, step: Callable[[str], None] = lambda doing: None
+          ) -> Iterator[BenchRow]:
+    """Every case in every order on every machine; by the model alone where ``engine`` is None.
+
+    ``step`` is told what comes next.  Raises as ``bench_run.measure``.
+    """
+    lists = [case_lists(case, order) for order in orders for case in cases]
+    for machine in machines:
+        for begin in range(0, len(lists), _TOGETHER):
+            some = lists[begin:begin + _TOGETHER]
+            names = ", ".join(case.name for case in some)
+            step(f"{machine.label}: {names}")
+            measured: Sequence[Measurement | None] = [None] * len(some)
+            if engine is not None:
+                measured = measure(machine.configuration, some, engine)
+            for case, measurement in zip(some, measured, strict=True):
+                yield _row(machine, case, measurement)
+
+
+def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order]) -> int:
+    """How often ``bench`` tells what comes next."""
+    return len(machines) * -(-len(cases) * len(orders) // _TOGETHER)
+
+
+def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
+    [once] = predict_cycles(machine.configuration, case.once)
+    [twice] = predict_cycles(machine.configuration, case.twice, after=case.once)
+    return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
+                    predicted=twice.cycles - once.cycles, bound=twice.bound / 2,
+                    binding=twice.binding)

@@ -1,0 +1,121 @@
+"""``cardcage bench``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .atomic_output import atomic_file, output_errors
+from .bench import bench, steps
+from .bench_baseline import against, load_baseline
+from .bench_cases import DEFAULT_CASES, ORDERS, case_names, check_case
+from .bench_machines import ALL_MACHINES, SETUPS, MachineAxes, bench_machines
+from .bench_table import bench_facts, bench_table, bench_text
+from .command_group import EXIT_DIFFERENT
+from .engines import ENGINES, make_engine
+from .progress import step_bar
+
+#: Of ``--engine``: ask the cycle model only.
+MODEL = "model"
+
+
+class Several(click.ParamType):
+    """Values with commas between them, each of another type."""
+
+    def __init__(self, each: click.ParamType, name: str) -> None:
+        self.each = each
+        self.name = name
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[Any, ...]:
+        return tuple(self.each.convert(word, param, ctx) for word in value.split(","))
+
+
+def _numbers(least: int, most: int) -> Several:
+    return Several(click.IntRange(least, most), "N,…")
+
+
+@click.command(name="bench")
+@click.argument("cases", nargs=-1, metavar="[CASE]...")
+@click.option("--elements", type=_numbers(1, 4096), help="Processing elements.  [default: 1,16]")
+@click.option("--units", type=_numbers(1, 64), help="Memory units of each.  [default: 2]")
+@click.option("--ports", type=_numbers(1, 2), help="Ports of a memory unit.  [default: the most]")
+@click.option("--setup", "setups", type=Several(click.Choice(list(SETUPS)), "WHO,…"),
+              help="Who prepares the triangles: host, small or fast hardware.  [default: host]")
+@click.option("--block", "blocks", type=_numbers(1, 32), help="Pixels a side that neighbour in "
+              "one processing element; 1 interlaces pixel by pixel.  [default: 1]")
+@click.option("--fifo", "fifos", type=_numbers(2, 4096),
+              help="Triangles a processing element holds in waiting.  [default: 16]")
+@click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
+              default="visible", help="Of depths: visible draws each triangle before those drawn "
+              "earlier, random shuffles them.  [default: visible]")
+@click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
+              "option restricts: hours.")
+@click.option("--engine", type=click.Choice([*ENGINES, MODEL]), default="verilator",
+              show_default=True, help="The simulator; model simulates nothing and asks the cycle "
+              "model.")
+@click.option("--json", "json_file", type=click.Path(path_type=Path), metavar="FILE",
+              help="Also write the figures, for programs and as a baseline.")
+@click.option("--against", "baseline", type=click.Path(path_type=Path), metavar="FILE",
+              help="Compare with the figures that --json wrote earlier.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png",
+              help="Also draw the cycles against the depth of the FIFOs, or the blocks.")
+@click.pass_obj
+def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, ...],
+                  everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
+                  plot: Path | None, **axes: Any) -> None:
+    """Measure clocks per triangle and fragment on chosen machines, beside the peers' figures.
+
+    Every machine is exact for any triangle on its 512x512 screen, and scans its picture out
+    meanwhile, at four clocks a pixel.  Options with commas multiply.  A CASE is a list of
+    triangles that open rasterisers were measured on, or mesh, a teapot of 53,592 triangles; a
+    wrong name lists close ones.  Without options a few cases run on 1 and 16 processing elements.
+
+    \b
+    Examples:
+      cardcage bench
+      cardcage bench one_pixel random_bbox16 --elements 1,4,16 --units 1,2
+      cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
+      cardcage bench random_bbox16 --elements 256,1024 --engine model
+      cardcage bench --json now.json --against before.json
+      cardcage bench --all --json everything.json
+
+    Exit status: 0 every picture equal and nothing slower, 1 otherwise.
+    """
+    chosen = {name: values for name, values in axes.items() if values is not None}
+    standard = vars(ALL_MACHINES) if everything else {}
+    machines = bench_machines(MachineAxes(**standard | chosen))
+    names = [check_case(case) for case in cases] or list(
+        case_names() if everything else DEFAULT_CASES)
+    if everything:
+        orders = ORDERS
+    before = None if baseline is None else load_baseline(baseline)
+    with ExitStack() as outputs:
+        files = {path: outputs.enter_context(atomic_file(path, option))
+                 for path, option in ((json_file, "--json"), (plot, "--plot")) if path is not None}
+        with step_bar(steps(machines, names, orders)) as step:
+            rows = list(bench(machines, names, orders,
+                              None if engine == MODEL else make_engine(engine), step))
+        if json_file is not None:
+            facts = {"command_line": command_line, "rows": bench_facts(rows)}
+            with output_errors(json_file, "--json"):
+                files[json_file].write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+        if plot is not None:
+            from .bench_chart import bench_chart  # takes a second to load
+
+            with output_errors(plot, "--plot"):
+                bench_chart(rows, files[plot])
+    if sys.stdout.isatty():
+        bench_table(rows)
+    else:
+        click.echo(bench_text(rows))
+    if before is not None:
+        comparison = against(rows, before)
+        click.echo(comparison.text())
+        if comparison.slower:
+            click.get_current_context().exit(EXIT_DIFFERENT)

@@ -1,0 +1,100 @@
+"""The machines that ``cardcage bench`` measures: what differs between them, multiplied out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from itertools import product
+from typing import Any
+
+from ..golden.configuration import MAXIMUM_SETUP_INTERVAL, MachineConfiguration
+from ..golden.errors import InputError
+from ..golden.plan import full_machine
+from .bench_cases import DEPTH_BITS, SIZE, SUB_BITS
+
+CLOCKS_PER_PIXEL = 4
+
+#: Who computes the increments of a triangle, and how fast.
+SETUPS: dict[str, dict[str, Any]] = {
+    "host": {"setup": "host"},
+    "small": {"setup": "hardware", "setup_interval": MAXIMUM_SETUP_INTERVAL},
+    "fast": {"setup": "hardware", "setup_interval": 1},
+}
+
+_CHOICES = {field.name: field.default for field in fields(MachineConfiguration)}
+
+#: Two where there are such memories.
+BEST_PORTS = 2 if "memory_ports" in _CHOICES else 1
+
+
+@dataclass(frozen=True)
+class MachineAxes:
+    """What to vary; every combination is a machine.
+
+    ``elements``  processing elements
+    ``units``     memory units of each
+    ``ports``     of each memory unit
+    ``setups``    keys of ``SETUPS``
+    ``blocks``    pixels a side that neighbour in one processing element; 1 is the interlace of 1979
+    ``fifos``     triangles that a processing element can hold in waiting
+    """
+
+    elements: Sequence[int] = (1, 16)
+    units: Sequence[int] = (2,)
+    ports: Sequence[int] = (BEST_PORTS,)
+    setups: Sequence[str] = ("host",)
+    blocks: Sequence[int] = (1,)
+    fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
+
+
+#: Of ``cardcage bench --all``.
+ALL_MACHINES = MachineAxes(
+    elements=(1, 4, 16), units=(1, 2), ports=(1, 2) if BEST_PORTS == 2 else (1,),
+    setups=tuple(SETUPS) if "setup" in _CHOICES else ("host",),
+    blocks=(1, 8) if "block" in _CHOICES else (1,))
+
+
+@dataclass(frozen=True)
+class BenchMachine:
+    """A machine, exact for every triangle on the screen, and what the table calls it."""
+
+    elements: int
+    units: int
+    ports: int
+    setup: str
+    block: int
+    fifo: int
+    configuration: MachineConfiguration
+
+    @property
+    def label(self) -> str:
+        cards = f"{self.elements}x(P{'M' * self.units})"
+        words = [cards, f"{self.ports} port{'s' * (self.ports > 1)}",
+                 "set-up by the host" if self.setup == "host" else f"{self.setup} set-up"]
+        if self.block > 1:
+            words.append(f"blocks of {self.block}")
+        if self.fifo != MachineConfiguration.fifo_depth:
+            words.append(f"FIFO of {self.fifo}")
+        return ", ".join(words)
+
+
+def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
+    """Every combination of ``axes``.  Raises ``InputError`` where there is no such machine."""
+    return [_machine(*chosen) for chosen in product(
+        axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, axes.fifos)]
+
+
+def _machine(elements: int, units: int, ports: int, setup: str, block: int,
+             fifo: int) -> BenchMachine:
+    if setup not in SETUPS:
+        raise InputError(f"--setup: {setup!r} is none of {', '.join(SETUPS)}")
+    chosen = {"memory_ports": ports, "block": block, **SETUPS[setup]}
+    plain = {"memory_ports": 1, "block": 1, "setup": "host", "setup_interval": 1}
+    for name, value in chosen.items():
+        if name not in _CHOICES and value != plain[name]:
+            raise InputError(f"{name}: this release builds no machine with {value}")
+    configuration = full_machine(
+        cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
+        depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
+        **{name: value for name, value in chosen.items() if name in _CHOICES})
+    return BenchMachine(elements, units, ports, setup, block, fifo, configuration)

@@ -1,0 +1,132 @@
+"""What ``cardcage bench`` says: for people, and for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from .bench import BenchRow
+from .bench_cases import Order, peers
+
+TITLES: dict[Order, str] = {
+    "visible": "every fragment visible",
+    "random": "random order of depths",
+}
+
+_COLUMNS = ("case", "triangles", "clocks a triangle", "model", "of bound", "clocks a fragment",
+            "fragments a clock", "busy", "latency")
+
+
+def bench_text(rows: Sequence[BenchRow]) -> str:
+    """Plain lines, the columns aligned, a table for each machine and order."""
+    lines = []
+    for title, some in _tables(rows):
+        cells = [_header(), *map(_cells, some)]
+        widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
+        lines += [title, *("  ".join(
+            [row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells), ""]
+    return "\n".join([*lines, *_notes()])
+
+
+def bench_table(rows: Sequence[BenchRow]) -> None:
+    """The same as tables on the terminal."""
+    console = Console()
+    for title, some in _tables(rows):
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), title=title,
+                      title_justify="left", title_style="bold")
+        for place, column in enumerate(_header()):
+            table.add_column(column, justify="left" if place == 0 else "right")
+        for row in some:
+            table.add_row(*_cells(row))
+        console.print(table)
+        console.print()
+    for line in _notes():
+        console.print(line, highlight=False, soft_wrap=True)
+
+
+def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[BenchRow]]]:
+    def title(row: BenchRow) -> str:
+        return f"{row.machine.label}; {TITLES[row.order]}"
+
+    return [(name, list(some)) for name, some in groupby(rows, title)]
+
+
+def _header() -> tuple[str, ...]:
+    return (*_COLUMNS, *(peer.short for peer in peers()))
+
+
+def _cells(row: BenchRow) -> tuple[str, ...]:
+    measured = row.measured
+    error = row.prediction_error
+
+    def figure(value: Callable[[Any], float], form: str) -> str:
+        return "" if measured is None else format(value(measured), form)
+
+    return (
+        row.case,
+        f"{row.triangles:,}",
+        f"{row.cycles / row.triangles:,.2f}",
+        "model" if error is None else f"{100 * error:+.1f} %",
+        f"{100 * row.bound / row.cycles:.0f} %",
+        figure(lambda it: it.cycles_per_fragment, ".3f"),
+        figure(lambda it: it.fragments_per_clock, ".2f"),
+        figure(lambda it: 100 * it.utilisation, ".0f") + " %" * (measured is not None),
+        figure(lambda it: it.latency, ","),
+        *(f"{figures[row.case]:,}" if row.case in figures else ""
+          for figures in (peer.cycles_per_triangle for peer in peers())),
+    )
+
+
+def _notes() -> list[str]:
+    without_setup = [peer.short for peer in peers() if "hardware" not in peer.setup]
+    without_depth = [peer.short for peer in peers() if not peer.depth_tested]
+    return [
+        "Every picture was compared with the golden one.  Clocks: (T(2n) - T(n)) / n of n "
+        "triangles; latency: T(n) less n of these.",
+        "Model: how far the cycle model is off.  Of bound: how near to what broadcast and busiest "
+        "processing element allow.  Busy: fragments per clock and processing element.",
+        "Peers on the right, in clocks a triangle: without set-up "
+        f"{' and '.join(without_setup)}, without a depth test {' and '.join(without_depth)}.",
+    ]
+
+
+def bench_facts(rows: Sequence[BenchRow]) -> list[dict[str, Any]]:
+    """The same as plain numbers and words, one object a row."""
+    return [_facts(row) for row in rows]
+
+
+def _facts(row: BenchRow) -> dict[str, Any]:
+    machine, measured = row.machine, row.measured
+    facts: dict[str, Any] = {
+        "key": row.key,
+        "machine": {"label": machine.label, "cards": machine.configuration.cards,
+                    "processing_elements": machine.elements, "units_each": machine.units,
+                    "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
+                    "fifo_depth": machine.fifo,
+                    "fraction_bits": machine.configuration.fraction_bits},
+        "case": row.case,
+        "order": row.order,
+        "triangles": row.triangles,
+        "predicted_cycles": row.predicted,
+        "bound": {"cycles": row.bound, "binding": row.binding},
+        "peers": {peer.name: peer.cycles_per_triangle[row.case] for peer in peers()
+                  if row.case in peer.cycles_per_triangle},
+    }
+    if measured is not None:
+        facts |= {
+            "fragments": measured.fragments,
+            "cycles": {"once": measured.cycles_once, "twice": measured.cycles_twice,
+                       "sustained": measured.sustained_cycles},
+            "cycles_per_triangle": measured.cycles_per_triangle,
+            "cycles_per_fragment": measured.cycles_per_fragment,
+            "fragments_per_clock": measured.fragments_per_clock,
+            "utilisation": measured.utilisation,
+            "latency": measured.latency,
+            "element_fragments": list(measured.element_fragments),
+            "prediction_error": row.prediction_error,
+        }
+    return facts
