@@ -97,7 +97,7 @@ def test_every_triangle_of_a_tiny_grid(name):
     exact_bits = scene_fraction_bits(display_list)
     values = set(map(tuple, display_list.depth.tolist()))
     assert len(values) == (2**case.depth_bits - 1) ** 3
-    worst_share, beyond, differing = 0.0, 0, []
+    worst_share, beyond, needed, differing = 0.0, 0, 0, []
     for fraction_bits in range(exact_bits + 2):
         prepared = prepare(display_list, fraction_bits=fraction_bits)
         index = np.searchsorted(prepared.primitive, truth.triangle)
@@ -131,13 +131,16 @@ def test_every_triangle_of_a_tiny_grid(name):
             assert not off[area * pixels < 1 << fraction_bits].any()
             assert stored.min() >= 0 and stored.max() <= high
             wrong += int(np.count_nonzero(off))
+            a_bit_less = off[(area * pixels) >> fraction_bits == 1]
+            needed += int(np.count_nonzero(a_bit_less))
             if vertex_values is display_list.depth:
                 assert np.array_equal(rounded, truth.fragments.depth)
         differing.append(wrong)
     print(f"{name}: {display_list.triangles} triangles, {len(truth.area)} fragments, four values "
           f"each; F = 0 … {exact_bits + 1}: {differing} wrong; worst error {worst_share:.4f} of "
-          f"the bound; {beyond} beyond it by the bias")
-    assert worst_share == 1 and beyond > 0
+          f"the bound; {beyond} beyond it by the bias; {needed} wrong "
+          "with one bit less than enough for them")
+    assert worst_share == 1 and beyond > 0 and needed > 0
     assert differing[exact_bits:] == [0, 0] and differing[0] > 0
     assert sorted(differing, reverse=True) == differing
     assert len(truth.area) > 10_000
