@@ -1,0 +1,69 @@
+"""Every hard case through the compiled machine, at exact and at two coarser precisions.
+
+One machine for all cases of a size draws them, each from other random memory;
+colours are compared as they leave the video output, depths as they are read back.
+"""
+
+import numpy as np
+import pytest
+
+from cardcage.golden import bit_true, exact
+from cardcage.golden.configuration import MachineConfiguration
+from cardcage.golden.hard_cases.catalogue import HARD_CASES
+from cardcage.golden.setup import scene_fraction_bits
+from cardcage.testbenches.simulation import expected_video, simulate
+from cardcage.testbenches.verilator_engine import VerilatorEngine
+from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
+
+#: Cards that draw the cases of each size; every case has one of these sizes.
+CARDS = {(32, 32): "PMPMMM", (97, 61): "PMM", (1000, 333): "PMM", (640, 480): "PMM"}
+
+LISTS = {name: case.make() for name, case in HARD_CASES.items()}
+
+
+def cases_of(size):
+    return {name: listed for name, listed in LISTS.items()
+            if (listed.width, listed.height) == size}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def verilator():
+    try:
+        find_verilator()
+    except ToolMissingError as missing:
+        pytest.skip(f"simulator verilator: {missing}")
+
+
+def test_every_case_has_a_machine():
+    assert sum(len(cases_of(size)) for size in CARDS) == len(HARD_CASES)
+
+
+@pytest.mark.parametrize("fraction_bits", ["exact", 6, 0])
+@pytest.mark.parametrize("size", CARDS, ids="{0[0]}x{0[1]}".format)
+def test_every_pixel_of_every_case(size, fraction_bits, record_property):
+    cases = cases_of(size)
+    bits = fraction_bits
+    if fraction_bits == "exact":  # of the case that needs most
+        bits = max(map(scene_fraction_bits, cases.values()))
+    configuration = MachineConfiguration(
+        cards=CARDS[size], width=size[0], height=size[1], fraction_bits=bits, clocks_per_pixel=2)
+    engine = VerilatorEngine()
+    wrong, pixels = [], 0
+    for seed, (name, listed) in enumerate(cases.items()):
+        simulation = simulate(configuration, listed, engine, memory_seed=seed)
+        models = {"bit-true": bit_true.draw(listed, fraction_bits=bits, shading="gouraud")}
+        if fraction_bits == "exact":
+            models["exact"] = exact.draw(listed, shading="gouraud")
+        for model, picture in models.items():
+            color = simulation.video != expected_video(configuration, picture.color)
+            depth = simulation.depth != picture.depth
+            if color.any() or depth.any():
+                wrong.append(f"hard:{name}: {np.count_nonzero(color.any(axis=2))} colours and "
+                             f"{np.count_nonzero(depth)} depths differ from {model}, memory seed "
+                             f"{seed}")
+        pixels += simulation.depth.size
+    assert not wrong, "\n".join(wrong)
+    count = f"{len(cases)} hard case{'s' * (len(cases) > 1)}"
+    record_property("measured", f"{count} at {size[0]}x{size[1]}, {bits} fraction bits "
+                    f"({'exact' if fraction_bits == 'exact' else 'coarser'}): {pixels:,} pixels "
+                    "of the machine equal golden's, colour and depth")
