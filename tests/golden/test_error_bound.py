@@ -117,6 +117,9 @@ def test_every_triangle_of_a_tiny_grid(name):
             error = (2 * area * carried) - (biased << fraction_bits)
             assert (error > -pixels * area).all() and (error <= pixels * area).all()
             worst_share = max(worst_share, (abs(error) / (pixels * area)).max())
+            # Below a bound of 1/4 the half alone keeps it in range: nothing is saturated.
+            inside = (carried >> fraction_bits)[2 * pixels < 1 << fraction_bits]
+            assert ((inside >= 0) & (inside <= high)).all()
             # Against the value and a half alone the bias counts, where D is even and 2**F a
             # multiple of its powers of two; elsewhere no start is rounded that far.
             unbiased = error + ((biased - 2 * numerator - area) << fraction_bits)
