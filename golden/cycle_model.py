@@ -150,7 +150,7 @@ def _walk(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
 
 def _matrices(spans: LatticeSpans, offsets: Float64, walk: Float64, clocks: Float64,
               pipeline: Pipeline) -> Float64:
-    """(triangles, elements, state, state): a triangle's effect, over (max, +).
+    """(triangles, state, state, elements): a triangle's effect, over (max, +), from state to state.
 
     The state is when the walker can load, when the ports are free, and when each of the last
     ``spans_ahead`` spans began, the newest first.
@@ -178,7 +178,9 @@ def _matrices(spans: LatticeSpans, offsets: Float64, walk: Float64, clocks: Floa
             begins[:, np.newaxis], begun[:, :-1]], axis=1)
         at[chosen] = offsets[span]
     state[:, 0] += (walk.reshape(-1) - at)[:, np.newaxis]
-    return state.reshape(triangles, elements, size, size)
+    # Elements last: what is done for all of them at once lies together.
+    return np.ascontiguousarray(state.reshape(triangles, elements, size, size)
+                                .transpose(0, 3, 2, 1))
 
 
 class _Broadcast:
@@ -189,7 +191,7 @@ class _Broadcast:
         self._pipeline = pipeline
         self._depths = np.array(depths)
         # Every processing element idle for long.
-        self._state = np.full((len(depths), elements, 2 + pipeline.spans_ahead), _NEVER)
+        self._state = np.full((len(depths), 2 + pipeline.spans_ahead, elements), _NEVER)
         self._sent = np.full(len(depths), -float(pipeline.broadcast))
         #: When the last processing element was through with the walk of a triangle.
         self._walked = np.full((len(depths), triangles), _NEVER)
@@ -203,9 +205,9 @@ class _Broadcast:
             place = number - self._depths
             room = np.where(place >= 0, self._walked[lines, place] + pipeline.fifo_room, 0)
             sent = np.maximum(sent + pipeline.broadcast, room)
-            np.maximum(state[:, :, 0], (sent + pipeline.fifo)[:, np.newaxis], out=state[:, :, 0])
-            state = (matrix + state[:, :, np.newaxis]).max(axis=-1)
-            last = state.max(axis=1)
+            np.maximum(state[:, 0], (sent + pipeline.fifo)[:, np.newaxis], out=state[:, 0])
+            state = (matrix + state[:, :, np.newaxis]).max(axis=1)
+            last = state[:, :2].max(axis=2)
             self._walked[:, number] = last[:, 0]
             self.finished[:, number] = last[:, 1] + pipeline.finish
         self._state, self._sent = state, sent
