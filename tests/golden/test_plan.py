@@ -1,0 +1,365 @@
+"""The planned machine: wide enough for its scene, no bit wider, every number with its reason."""
+
+import random
+import time
+from dataclasses import replace
+from fractions import Fraction
+from math import ceil
+
+import numpy as np
+import pytest
+
+from cardcage.golden import bit_true, exact
+from cardcage.golden.configuration import MachineConfiguration, configure
+from cardcage.golden.display_list import DisplayList
+from cardcage.golden.errors import InputError
+from cardcage.golden.fixed import to_signed
+from cardcage.golden.plan import (
+    error_fraction_bits,
+    full_machine,
+    on_screen_fraction_bits,
+    plan,
+    triangle_bits,
+)
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.scene_needs import fewest_sub_bits, fitted, scene_needs, with_sub_bits
+from cardcage.golden.setup import carry_edges, prepare, scene_fraction_bits
+
+CARDS = "2x(PMM)"
+
+
+def triangles(*positions, depth=100, color=(10, 20, 30), width=16, height=16, sub_bits=4,
+              depth_bits=12):
+    """A display list from corners in sub-pixel units, each of one depth and one colour."""
+    count = len(positions)
+    return DisplayList(
+        width=width, height=height, sub_bits=sub_bits, depth_bits=depth_bits,
+        position=np.array(positions, np.int32).reshape(count, 3, 2),
+        depth=np.full((count, 3), depth, np.int64),
+        color=np.broadcast_to(np.array(color, np.uint8), (count, 3, 3)).copy())
+
+
+def random_list(seed, count=20, *, width=16, height=16, sub_bits=4, depth_bits=12, even=0):
+    """Large and small triangles, some into the corners of the guard band; coordinates are
+    multiples of ``2**even``."""
+    source = random.Random(f"plan {seed}")
+    limit = 1 << ((max(width, height) - 1).bit_length() + 1 + sub_bits)
+    position = []
+    for _ in range(count):
+        reach = source.choice([3 << sub_bits, width << sub_bits, limit])
+        near = [source.randrange(size << sub_bits) for size in (width, height)]
+        position.append([[max(-limit, min(limit - 1, near[axis] + source.randint(-reach, reach)))
+                          >> even << even for axis in range(2)] for _ in range(3)])
+    numbers = np.random.default_rng(seed)
+    return DisplayList(
+        width=width, height=height, sub_bits=sub_bits, depth_bits=depth_bits,
+        position=np.array(position, np.int32),
+        depth=numbers.integers(0, (1 << depth_bits) - 1, (count, 3)),
+        color=numbers.integers(0, 256, (count, 3, 3)).astype(np.uint8))
+
+
+def signed_bits(values):
+    """The fewest bits of two's complement that hold them all, by trying."""
+    return next(bits for bits in range(1, 64)
+                if all(-(1 << (bits - 1)) <= value < 1 << (bits - 1) for value in values))
+
+
+def edge_columns(display_list, x_shift=0, y_shift=0):
+    """Every edge's first column on each of its rows, by rational intercepts; its height; and its
+    height times its rows."""
+    unit_x, unit_y = (1 << (display_list.sub_bits + shift) for shift in (x_shift, y_shift))
+    prepared = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
+    columns, heights, products = [], [], []
+    for index, primitive in enumerate(prepared.primitive):
+        corners = sorted(display_list.position[primitive].tolist(), key=lambda corner: corner[1])
+        top, middle, bottom = (int(getattr(prepared, name)[index])
+                               for name in ("top", "middle", "bottom"))
+        for begin, end, first, after in ((0, 2, top, bottom), (0, 1, top, middle),
+                                         (1, 2, middle, bottom)):
+            (bx, by), (ex, ey) = corners[begin], corners[end]
+            products.append((ey - by) * (after - first))
+            for row in range(first, after):
+                x = bx + (row * unit_y + unit_y // 2 - by) * Fraction(ex - bx, ey - by)
+                columns.append(ceil((x - unit_x // 2) / unit_x))
+                heights.append(ey - by)
+    return columns, heights, products
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("x_shift", "y_shift"), [(0, 0), (0, 1), (1, 1)])
+def test_widths_are_the_fewest(seed, x_shift, y_shift):
+    """Against every value that an edge or a vertex takes, found one by one."""
+    display_list = random_list(seed)
+    needs = scene_needs(display_list, x_shift=x_shift, y_shift=y_shift)
+    columns, heights, products = edge_columns(display_list, x_shift, y_shift)
+    assert needs.columns == (min(columns), max(columns))
+    assert needs.edge_column_bits == signed_bits(columns)
+    assert needs.edge_height == max(heights)
+    assert needs.edge_remainder_bits == max(heights).bit_length()
+    assert needs.edge_rows_height == max(products)
+    assert needs.coordinate_bits == signed_bits(display_list.position.ravel().tolist())
+    drawn = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
+    assert needs.drawn == len(drawn)
+    assert needs.exact_fraction_bits == scene_fraction_bits(display_list, x_shift=x_shift,
+                                                            y_shift=y_shift)
+    assert needs.extent == int((drawn.right - drawn.left + drawn.bottom - drawn.top).max()) - 2
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_carried_edges_are_exact_on_every_row(seed):
+    """With the columns and the fraction of the plan, on triangles of all sizes."""
+    display_list = random_list(seed, 30)
+    needs = scene_needs(display_list)
+    prepared = prepare(display_list, fraction_bits=0)
+    for edges, begin, end in ((prepared.long, prepared.top, prepared.bottom),
+                              (prepared.upper, prepared.top, prepared.middle),
+                              (prepared.lower, prepared.middle, prepared.bottom)):
+        assert wrong_columns(edges, end - begin, needs.edge_column_bits,
+                             needs.edge_fraction_bits) == 0
+
+
+def wrong_columns(edges, rows, column_bits, fraction_bits):
+    """On how many rows the carried edge's column is not the quotient."""
+    carried = carry_edges(edges, column_bits=column_bits, fraction_bits=fraction_bits)
+    index = np.repeat(np.arange(len(rows)), rows)
+    row = np.concatenate([np.arange(count) for count in rows])
+    column = to_signed((carried.start[index] + row * carried.step[index]) >> fraction_bits,
+                       column_bits)
+    exact_column = edges.column[index] + row * edges.column_step[index] + (
+        edges.remainder[index] + row * edges.remainder_step[index]) // edges.denominator[index]
+    return int((column != exact_column).sum())
+
+
+def test_an_edge_that_needs_its_last_fraction_bit():
+    """Among all edges of one height on a full screen some are wrong with a bit less."""
+    height, wrong = 255, 0
+    for run in range(-200, 200):
+        display_list = triangles([[200, 0], [200 + run, height], [0, 0]])
+        needs = scene_needs(display_list)
+        prepared = prepare(display_list, fraction_bits=0)
+        rows = prepared.bottom - prepared.top
+        assert wrong_columns(prepared.long, rows, needs.edge_column_bits,
+                             needs.edge_fraction_bits) == 0
+        wrong += wrong_columns(prepared.long, rows, needs.edge_column_bits,
+                               needs.edge_fraction_bits - 1) > 0
+    assert wrong > 0
+
+
+def carried_range(display_list, fraction_bits):
+    """The least and the greatest whole part of carried depth at any covered pixel."""
+    prepared = prepare(display_list, fraction_bits=fraction_bits)
+    index = {int(primitive): place for place, primitive in enumerate(prepared.primitive)}
+    found = exact.fragments(display_list)
+    planes, modulus = prepared.depth, 1 << prepared.depth.word_bits
+    wholes = []
+    for primitive, x, y in zip(found.primitive, found.x, found.y, strict=True):
+        place = index[int(primitive)]
+        word = (planes.start[place] + (int(x) - int(prepared.left[place])) * planes.step_x[place]
+                + (int(y) - int(prepared.top[place])) * planes.step_y[place]) % modulus
+        wholes.append((word - modulus if word >= modulus // 2 else word) >> fraction_bits)
+    return min(wholes), max(wholes)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("fraction_bits", [0, 2, 5, "exact"])
+def test_carried_depth_fits(seed, fraction_bits):
+    display_list = random_list(seed)
+    needs = scene_needs(display_list)
+    bits = needs.exact_fraction_bits if fraction_bits == "exact" else fraction_bits
+    low, high = carried_range(display_list, bits)
+    assert signed_bits([low, high]) <= needs.depth_integer_bits(bits)
+    if fraction_bits == "exact":
+        assert (low >= 0, high <= needs.greatest_depth) == (True, True)
+
+
+def test_carried_depth_has_no_bit_to_spare():
+    """A level triangle at the greatest depth of its width fills the word; its sign is needed."""
+    for depth in (1, 2, 3, 127, 128, 4094):
+        display_list = triangles([[0, 0], [200, 8], [8, 200]], depth=depth)
+        needs = scene_needs(display_list)
+        bits = needs.exact_fraction_bits
+        low, high = carried_range(display_list, bits)
+        assert signed_bits([low, high]) == needs.depth_integer_bits(bits) == depth.bit_length() + 1
+
+
+LIMITS = {
+    # A full screen: columns 0 to 16 in place of 0 to 15 need one bit more.
+    "edge_column_bits": triangles([[0, 0], [256, 0], [0, 256]], [[256, 256], [256, 0], [0, 256]]),
+    # 64 sub-pixel units high.
+    "edge_remainder_bits": triangles([[8, 8], [40, 24], [12, 72]]),
+    "edge_fraction_bits": triangles([[8, 8], [40, 24], [12, 72]]),
+    "coordinate_bits": triangles([[8, 8], [128, 24], [12, 72]]),
+    "depth_plane_bits": triangles([[0, 0], [200, 8], [8, 200]], depth=128),
+    "channel_plane_bits": triangles([[0, 0], [200, 8], [8, 200]], color=((8, 9, 3), (1, 128, 2),
+                                                                         (0, 0, 0))),
+}
+FIELDS = {"depth_plane_bits": "depth_integer_bits", "channel_plane_bits": "channel_integer_bits"}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_one_bit_less_is_refused(name):
+    display_list = LIMITS[name]
+    machine = plan(display_list, cards=CARDS).configuration
+    listed = fitted(machine, display_list)
+    assert scene_needs(listed).drawn > 0
+    field = FIELDS.get(name, name)
+    narrower = replace(machine, **{field: getattr(machine, field) - 1}
+                       | ({"edge_fraction_bits": 0} if name == "edge_remainder_bits" else {}))
+    with pytest.raises(InputError, match=f"display list: {name} ") as raised:
+        fitted(narrower, display_list)
+    assert "\n" not in str(raised.value)
+    # A list that needs a bit less is drawn on it.
+    if name == "edge_remainder_bits":
+        position = listed.position.copy()
+        position[0, 2, 1] -= 1 << (listed.sub_bits - 1)
+        lower = replace(listed, position=position)
+        assert scene_needs(lower).edge_remainder_bits == machine.edge_remainder_bits - 1
+        assert fitted(narrower, lower) is lower
+
+
+@pytest.mark.parametrize(("field", "value"), [("width", 32), ("height", 8), ("depth_bits", 10)])
+def test_other_formats_are_refused(field, value):
+    machine = MachineConfiguration(**{"cards": CARDS, "width": 16, "height": 16, "sub_bits": 4,
+                                      "depth_bits": 12} | {field: value})
+    with pytest.raises(InputError, match=f"display list: {field} .*built for {value}"):
+        fitted(machine, random_list(1))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_machine_for_every_triangle_refuses_none(seed):
+    display_list = random_list(seed, 40)
+    for bits in (0, 3, None):
+        machine = configure(display_list, cards=CARDS, fraction_bits=bits)
+        assert fitted(machine, display_list) is display_list
+        planned = plan(display_list, cards=CARDS, fraction_bits=bits).configuration
+        for name in ("coordinate_bits", "edge_column_bits", "edge_remainder_bits",
+                     "edge_fraction_bits", "depth_plane_bits", "channel_plane_bits"):
+            assert getattr(planned, name) <= getattr(machine, name)
+
+
+@pytest.mark.parametrize("even", [0, 1, 2, 3, 4])
+def test_sub_pixel_bits_that_are_not_used_are_dropped(even):
+    display_list = random_list(even, even=even)
+    bits = max(1, 4 - even)
+    assert fewest_sub_bits(display_list) == bits
+    planned = plan(display_list, cards=CARDS)
+    assert planned.configuration.sub_bits == bits
+    listed = fitted(planned.configuration, display_list)
+    picture, same = exact.draw(display_list), exact.draw(listed)
+    np.testing.assert_array_equal(picture.color, same.color)
+    np.testing.assert_array_equal(picture.depth, same.depth)
+    drawn = bit_true.draw(listed, fraction_bits=planned.configuration.fraction_bits)
+    np.testing.assert_array_equal(picture.depth, drawn.depth)
+    if bits > 1:
+        with pytest.raises(InputError, match=f"sub_bits {bits}"):
+            with_sub_bits(display_list, bits - 1)
+    finer = with_sub_bits(display_list, 8)
+    np.testing.assert_array_equal(exact.draw(finer).depth, picture.depth)
+
+
+@pytest.mark.parametrize("extent", [0, 1, 7, 30, 1022, 8190])
+def test_bits_for_an_error_are_the_fewest(extent):
+    for error in (1, 2, 5, 100, 5000):
+        bits = error_fraction_bits(extent, error)
+        assert ceil(bit_true.error_bound(bits, extent)) <= error
+        assert bits == 0 or ceil(bit_true.error_bound(bits - 1, extent)) > error
+
+
+@pytest.mark.parametrize("error", [1, 2, 7])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_error_asked_for_is_kept(seed, error):
+    """By the picture that the datapath's model draws, whoever wins its pixels."""
+    display_list = random_list(seed, 30)
+    machine = plan(display_list, cards=CARDS, max_error=error).configuration
+    assert machine.fraction_bits < scene_fraction_bits(display_list)
+    drawn = bit_true.draw(fitted(machine, display_list), fraction_bits=machine.fraction_bits)
+    assert abs(drawn.depth - exact.draw(display_list).depth).max() <= error
+
+
+def test_small_triangles_take_fewer_bits_than_the_screen():
+    scene = make_display_list("sphereflake:depth=1", width=256, height=256).display_list
+    planned = plan(scene, cards=CARDS, max_error=1)
+    assert planned.full.fraction_bits == on_screen_fraction_bits(256, 256, 8, 1) == 8
+    assert planned.configuration.fraction_bits < 8
+
+
+def test_never_more_bits_than_exact():
+    display_list = triangles([[8, 8], [9, 24], [24, 9]])
+    exact_bits = scene_fraction_bits(display_list)
+    assert plan(display_list, cards=CARDS, max_error=1).configuration.fraction_bits <= exact_bits
+    assert full_machine(cards="PM", width=1, height=1, max_error=1).fraction_bits <= 64
+
+
+@pytest.mark.parametrize("arguments", [
+    {"max_error": -1}, {"max_error": 1 << 32}, {"max_error": 1.5}, {"max_error": True},
+    {"max_error": 2, "fraction_bits": 3}, {"fraction_bits": 65},
+])
+def test_refused(arguments):
+    with pytest.raises(InputError, match=r"max.error|fraction.bits"):
+        plan(random_list(1), cards=CARDS, **arguments)
+
+
+def test_an_empty_list():
+    empty = replace(random_list(1), position=np.zeros((0, 3, 2), np.int32),
+                    depth=np.zeros((0, 3), np.int64), color=np.zeros((0, 3, 3), np.uint8))
+    planned = plan(empty, cards=CARDS)
+    machine = planned.configuration
+    assert (machine.fraction_bits, machine.shading, machine.fifo_depth) == (0, "flat", 2)
+    assert fitted(machine, empty).triangles == 0
+    assert all(line.reason for line in planned.lines)
+
+
+def test_what_is_given_is_not_planned():
+    display_list = random_list(2)
+    planned = plan(display_list, cards="PM", fraction_bits=7, shading="gouraud", fifo_depth=9,
+                   words=64, edge_column_bits=6)
+    machine = planned.configuration
+    assert (machine.fraction_bits, machine.fifo_depth, machine.edge_column_bits) == (7, 9, 6)
+    assert machine.words == planned.full.words == 64
+    assert planned.needs == scene_needs(display_list, x_shift=machine.interlace.x_shift,
+                                        y_shift=machine.interlace.y_shift)
+
+
+def test_lines_say_what_the_machine_has():
+    """Every number is the configuration's; what a line saves, the triangle's words lack."""
+    scene = make_display_list("tetra", width=64, height=64).display_list
+    planned = plan(scene, cards=CARDS)
+    machine, full, lines = planned.configuration, planned.full, {line.item: line
+                                                                for line in planned.lines}
+    for item, field in (("sub-pixel bits", "sub_bits"), ("coordinate bits", "coordinate_bits"),
+                        ("edge column bits", "edge_column_bits"), ("FIFO depth", "fifo_depth"),
+                        ("edge remainder bits", "edge_remainder_bits"),
+                        ("fraction bits", "fraction_bits")):
+        assert (lines[item].value, lines[item].full) == (str(getattr(machine, field)),
+                                                         str(getattr(full, field)))
+    assert lines["depth integer bits"].value == str(machine.depth_integer_bits)
+    assert (lines["interpolants"].value, lines["interpolants"].full) == ("depth", "depth, colour")
+    assert lines["interpolants"].saves == triangle_bits(full) - triangle_bits(
+        replace(full, shading="flat"))
+    assert "no colour interpolator" in lines["interpolants"].reason
+    assert "no line stepper" in lines["lines"].reason
+    for name in ("edge_column_bits", "edge_remainder_bits"):
+        saved = triangle_bits(full) - triangle_bits(replace(full, edge_fraction_bits=0, **{
+            name: getattr(machine, name)}))
+        assert lines[name.replace("_", " ")].saves == saved > 0
+    assert triangle_bits(machine) < triangle_bits(full) / 2
+    assert f"{planned.needs.exact_double_area:,}" in lines["fraction bits"].reason
+    assert str(planned.needs.columns[1]) in lines["edge column bits"].reason
+
+
+def test_fifos_hold_no_more_than_there_is():
+    one = triangles([[8, 8], [100, 24], [12, 72]])
+    assert plan(one, cards=CARDS).configuration.fifo_depth == 2
+    several = triangles(*[[[8, 8], [100, 24], [12, 72]]] * 6)
+    assert plan(several, cards=CARDS).configuration.fifo_depth == 7
+    many = triangles(*[[[8, 8], [100, 24], [12, 72]]] * 60)
+    assert plan(many, cards=CARDS).configuration.fifo_depth == 16
+
+
+def test_quick():
+    """Two seconds for fifty thousand triangles, by the clock of this process alone."""
+    scene = make_display_list("teapot:tessellation=28", width=512, height=512).display_list
+    assert scene.triangles > 49_000
+    began = time.process_time()
+    plan(scene, cards=CARDS)
+    assert time.process_time() - began < 2
