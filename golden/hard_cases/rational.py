@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import floor
 
 from ..display_list import DisplayList
+from ..grid import Grid
 
 Point = tuple[int, int]
 Color = tuple[int, int, int]
@@ -33,9 +34,10 @@ def rational_picture(display_list: DisplayList, sample: int = 1) -> dict[Point, 
     """
     positions = display_list.position.tolist()
     depths = display_list.depth.tolist()
+    grid = Grid.of(display_list)
     nearest: dict[Point, tuple[int, int, list[int]]] = {}
     for primitive, (corners, depth) in enumerate(zip(positions, depths, strict=True)):
-        for pixel, weights in covered(corners, display_list, sample):
+        for pixel, weights in covered(corners, grid, sample):
             here = round_half_up(mean(depth, weights))
             if pixel not in nearest or (here, primitive) < nearest[pixel][:2]:
                 nearest[pixel] = here, primitive, weights
@@ -48,7 +50,7 @@ def rational_picture(display_list: DisplayList, sample: int = 1) -> dict[Point, 
 
 
 def covered(
-    corners: list[list[int]], display_list: DisplayList, sample: int = 1
+    corners: list[list[int]], grid: Grid, sample: int = 1
 ) -> Iterator[tuple[Point, list[int]]]:
     """The pixels whose centres a triangle covers, with the weight of each vertex there.
 
@@ -57,16 +59,15 @@ def covered(
     triangle if it is a left one (the inside lies to its right) or a top one
     (level, the inside below).
     """
-    unit = 1 << display_list.sub_bits
     doubled = area(*corners)
     if doubled == 0:
         return
     xs, ys = zip(*corners, strict=True)
-    for y in range(max(0, min(ys) // unit), min(display_list.height, max(ys) // unit + 1)):
-        for x in range(max(0, min(xs) // unit), min(display_list.width, max(xs) // unit + 1)):
-            if (y * display_list.width + x) % sample:
+    for y in range(max(0, min(ys) // grid.unit_y), min(grid.height, max(ys) // grid.unit_y + 1)):
+        for x in range(max(0, min(xs) // grid.unit_x), min(grid.width, max(xs) // grid.unit_x + 1)):
+            if (y * grid.width + x) % sample:
                 continue
-            centre = [x * unit + unit // 2, y * unit + unit // 2]
+            centre = [x * grid.unit_x + grid.unit_x // 2, y * grid.unit_y + grid.unit_y // 2]
             weights = []
             for opposite in range(3):
                 begin, end = corners[opposite - 2], corners[opposite - 1]

@@ -11,51 +11,22 @@ from hypothesis import strategies as st
 from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
+from cardcage.golden.grid import Grid
+from cardcage.golden.hard_cases.rational import covered, mean, round_half_up
 
 SHIFTS = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2), (2, 3)]
 
 
 def brute_force(display_list, x_shift=0, y_shift=0):
-    """{(primitive, x, y): (depth, red, green, blue)} and the size, pixel by pixel.
-
-    Barycentric coordinates in fractions; the top-left rule by looking which
-    way the inside lies: right of a left edge, below a top edge.
-    """
-    width = -(-display_list.width // 2**x_shift)
-    height = -(-display_list.height // 2**y_shift)
-    unit = 2**display_list.sub_bits
+    """{(primitive, x, y): (depth, red, green, blue)} and the size, pixel by pixel, in fractions."""
+    grid = Grid.of(display_list, x_shift, y_shift)
     found = {}
     for primitive in range(display_list.triangles):
-        corners = [tuple(Fraction(c, unit) for c in corner)
-                   for corner in display_list.position[primitive].tolist()]
-        values = [(int(depth), *map(int, color)) for depth, color in
-                  zip(display_list.depth[primitive], display_list.color[primitive], strict=True)]
-
-        def area(a, b, c):
-            return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
-
-        whole = area(*corners)
-        if whole == 0:
-            continue
-        for y in range(height):
-            for x in range(width):
-                centre = (x + Fraction(1, 2)) * 2**x_shift, (y + Fraction(1, 2)) * 2**y_shift
-                weights = []
-                for opposite in range(3):
-                    a, b = corners[opposite - 2], corners[opposite - 1]
-                    weight = area(a, b, centre) / whole
-                    inward_x = (a[1] - b[1]) / whole  # how the weight grows to the right
-                    inward_y = (b[0] - a[0]) / whole  # and downwards
-                    top_left = inward_x > 0 or (inward_x == 0 and inward_y > 0)
-                    if weight < 0 or (weight == 0 and not top_left):
-                        break
-                    weights.append(weight)
-                else:
-                    found[primitive, x, y] = tuple(
-                        floor(sum(w * v for w, v in zip(weights, channel, strict=True))
-                              + Fraction(1, 2))
-                        for channel in zip(*values, strict=True))
-    return found, width, height
+        values = [display_list.depth[primitive].tolist(),
+                  *display_list.color[primitive].T.tolist()]
+        for (x, y), weights in covered(display_list.position[primitive].tolist(), grid):
+            found[primitive, x, y] = tuple(round_half_up(mean(value, weights)) for value in values)
+    return found, grid.width, grid.height
 
 
 def as_dictionary(fragments):

@@ -16,6 +16,7 @@ from cardcage.golden.picture import NO_PRIMITIVE
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.setup import prepare, scene_fraction_bits
 from cardcage.testbenches.cli import main
+from cardcage.testbenches.machine_options import MachineOptions, machine_for_scene
 
 COARSE = (6, 0)
 
@@ -192,6 +193,13 @@ def test_a_case_is_drawn_by_name_at_its_own_size():
     for wrong in ({"width": 64}, {"depth_bits": 16}, {"background": (1, 2, 3)}):
         with pytest.raises(InputError, match=rf"hard:size-97x61: {next(iter(wrong))}: "):
             make_display_list("hard:size-97x61", **wrong)
+
+
+@pytest.mark.parametrize("options", [{}, {"preset": "paper"}, {"size": (97, 61)}])
+def test_a_machine_is_built_for_its_size(options):
+    listed, machine = machine_for_scene("hard:size-97x61", MachineOptions(**options))
+    assert (machine.width, machine.height) == (97, 61)
+    assert listed.display_list.triangles == 8
 
 
 def test_an_unknown_name_lists_those_that_are_close():

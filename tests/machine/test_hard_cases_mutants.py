@@ -19,6 +19,7 @@ from cardcage.golden import bit_true, exact, fixed
 from cardcage.golden import setup as golden_setup
 from cardcage.golden.bit_true import error_bound
 from cardcage.golden.configuration import MachineConfiguration
+from cardcage.golden.grid import Grid
 from cardcage.golden.hard_cases.catalogue import hard_case
 from cardcage.golden.hard_cases.rational import covered
 from cardcage.golden.setup import scene_fraction_bits
@@ -52,7 +53,7 @@ def carried_depths(display_list, fraction_bits, *, rounded=nearest, bias=Fractio
         start, step_x, step_y = (
             rounded(value * 2**fraction_bits)
             for value in (corner_depth + (area // 2 + bias) / area, slope_x * unit, slope_y * unit))
-        for (x, y), _ in covered(corners, display_list):
+        for (x, y), _ in covered(corners, Grid.of(display_list)):
             assert (x, y) not in depths
             depths[x, y] = start + (x - left) * step_x + (y - top) * step_y >> fraction_bits
     return depths
