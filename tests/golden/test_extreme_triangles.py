@@ -124,17 +124,17 @@ def test_the_formula_in_int64_overflows(doubled):
     assert wrong > checked // 2
 
 
-def test_on_both_sides_of_where_the_depth_is_split():
-    """D (depth + 1) just below and at 2**63: one plane, then two halves, the same picture."""
-    limit = 1 << 15
-    position = [[[limit - 1, limit - 1], [limit - 1, -limit], [-limit, limit - 1]]]
-    area = (2 * limit - 1) ** 2
-    last_whole = (2**63 - 1) // area - 1
-    assert area * (last_whole + 1) < 2**63 <= area * (last_whole + 2)
-    for greatest, whole in ((last_whole, True), (last_whole + 1, False)):
+@pytest.mark.parametrize(("form", "limit"), [("_doubles", 2**52), ("whole", 2**63 - 1)])
+def test_on_both_sides_of_where_the_form_of_depth_changes(form, limit):
+    """Quotients of doubles, then of 64-bit integers, then two halves: the last and the first."""
+    end = 1 << 15
+    position = [[[end - 1, end - 1], [end - 1, -end], [-end, end - 1]]]
+    area = (2 * end - 1) ** 2
+    first_beyond = limit // area
+    for greatest, inside in ((first_beyond - 1, True), (first_beyond, False)):
         display_list = listed(position, [[greatest, 0, greatest]], 64, depth_bits=32)
         triangles = Triangles.of(display_list, Grid.of(display_list))
-        assert exact._Depth(display_list, triangles).whole == whole
+        assert getattr(exact._Depth(display_list, triangles), form) == inside
         fragments = exact.fragments(display_list)
         assert len(fragments) == 64 * 64
         for at in range(0, len(fragments), 11):
