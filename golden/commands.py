@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .configuration import CHANNEL_BITS, MachineConfiguration
+from .display_list import DisplayList
 from .setup import PreparedTriangles, carry_edges
 
 VERSION = 2
@@ -33,7 +34,7 @@ class Opcode(IntEnum):
     """What the host can ask for."""
 
     FRAME_START = 1  # clear the back picture to the background colour
-    TRIANGLE = 2  # vertices; reserved for the machine with set-up in hardware
+    TRIANGLE = 2  # vertices, for the machine with set-up in hardware
     PREPARED_TRIANGLE = 3  # increments computed by the host
     FRAME_END = 4  # finish the picture, show it from the next scan on
     READ_DEPTH = 5  # send every word of the depth buffer
@@ -97,7 +98,7 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
 
 
 def triangle_layout(configuration: MachineConfiguration) -> Layout:
-    """The body of ``TRIANGLE``, reserved: three vertices as in the display list."""
+    """The body of ``TRIANGLE``: three vertices as in the display list."""
     vertex: Layout = {
         "x": configuration.coordinate_bits,
         "y": configuration.coordinate_bits,
@@ -151,6 +152,23 @@ def command(opcode: Opcode, body: int = 0) -> int:
 def frame_start(background: tuple[int, int, int]) -> int:
     return command(Opcode.FRAME_START,
                    pack(frame_start_layout(), dict(zip(CHANNELS, background, strict=True))))
+
+
+def triangles(configuration: MachineConfiguration,
+              display_list: DisplayList) -> NDArray[np.object_]:
+    """The ``TRIANGLE`` command of every triangle of a list in the machine's formats, in order."""
+    values = {
+        f"vertex_{corner}": {
+            "x": display_list.position[:, corner, 0].astype(object),
+            "y": display_list.position[:, corner, 1].astype(object),
+            "depth": display_list.depth[:, corner].astype(object),
+            **{name: display_list.color[:, corner, channel].astype(object)
+               for channel, name in enumerate(CHANNELS)},
+        } for corner in range(3)
+    }
+    body: NDArray[np.object_] = pack(triangle_layout(configuration), values)
+    words: NDArray[np.object_] = (body << BODY_OFFSET) + int(Opcode.TRIANGLE)
+    return words
 
 
 def prepared_triangles(configuration: MachineConfiguration,

@@ -8,7 +8,8 @@ from ..golden import commands
 from ..golden.commands import Fault, Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
 from .backplane import BroadcastLines, Connector
-from .layouts import Operation, broadcast_layout, prepared_triangle_layout, response_layout
+from .layouts import Operation, broadcast_layout, response_layout
+from .triangle_setup import TriangleSetup
 
 __all__ = ["CentralBroadcastController"]
 
@@ -26,12 +27,13 @@ class CentralBroadcastController(wiring.Component):
     is shown from the start of the next scan on; until then the old one stays,
     whole.
 
-    Prepared triangles pass straight from the command to the broadcast; a set-up
-    unit that turns ``TRIANGLE`` into the same prepared form belongs between the
-    two, in ``_announce``.
+    Prepared triangles pass straight from the command to the broadcast.  With set-up
+    in hardware the others go through ``TriangleSetup``, which works on the next ones
+    while the processing elements draw; every other command waits until it is empty.
 
-    Latency: a prepared triangle is broadcast in the clock in which it is taken.
-    Throughput: a triangle a clock while every FIFO has room.
+    Latency: a prepared triangle is broadcast in the clock in which it is taken, another
+    one as late as ``TriangleSetup`` says.  Throughput: a prepared triangle a clock while
+    every FIFO has room, another one as ``TriangleSetup`` says.
 
     Members
     -------
@@ -100,6 +102,16 @@ class CentralBroadcastController(wiring.Component):
             with m.If(self.responses.ready):
                 m.next = then
 
+        in_turn = C(1)
+        if self.configuration.setup == "hardware":
+            m.submodules.setup = setup = TriangleSetup(configuration=self.configuration)
+            in_turn = (opcode == Opcode.TRIANGLE) | ~setup.busy
+            m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(body)]
+            with m.If(setup.triangles.valid):
+                m.d.comb += [packet.body.draw.eq(setup.triangles.payload),
+                             setup.triangles.ready.eq(self.broadcast.ready)]
+                announce(Operation.DRAW)
+
         # Unless the controller itself speaks, the processing elements do.
         m.d.comb += [
             self.responses.valid.eq(self.right.response.valid),
@@ -131,11 +143,16 @@ class CentralBroadcastController(wiring.Component):
             with m.State("REPORT_BOOTED"):
                 respond(ResponseKind.BOOTED, booted, "COMMAND")
 
-            with m.State("COMMAND"), m.If(self.commands.valid):
+            with m.State("COMMAND"), m.If(self.commands.valid & in_turn):
                 m.d.comb += self.commands.ready.eq(self.broadcast.ready)
                 with m.Switch(opcode):
+                    if self.configuration.setup == "hardware":
+                        with m.Case(Opcode.TRIANGLE):
+                            m.d.comb += [setup.vertices.valid.eq(1),
+                                         self.commands.ready.eq(setup.vertices.ready)]
                     with m.Case(Opcode.PREPARED_TRIANGLE):
-                        self._announce(m, packet, body, announce)
+                        m.d.comb += packet.body.draw.eq(body)
+                        announce(Operation.DRAW)
                     with m.Case(Opcode.FRAME_START):
                         clear = packet.body.clear
                         m.d.comb += Cat(clear.red, clear.green, clear.blue).eq(body)
@@ -178,12 +195,6 @@ class CentralBroadcastController(wiring.Component):
                 with m.If(self.commands.valid):
                     m.next = "REFUSE"
         return m
-
-    def _announce(self, m, packet, body, announce):
-        """The seam for set-up in hardware: whatever prepares a triangle, this broadcasts it."""
-        size = prepared_triangle_layout(self.configuration).size
-        m.d.comb += packet.body.draw.eq(body[:size])
-        announce(Operation.DRAW)
 
     def _picture(self, m):
         """Whether the number of units is one the cards can interlace, and the resolution."""

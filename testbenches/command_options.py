@@ -12,6 +12,7 @@ from ..golden.configuration import MAXIMUM_WORDS, PRESETS
 from ..golden.fixed import MAX_FRACTION_BITS
 from ..golden.plan import MAXIMUM_ERROR
 from ..golden.ranges import MAXIMUM_SIZE
+from .machine_options import SETUPS
 
 
 class Size(click.ParamType):
@@ -73,6 +74,9 @@ _FURTHER_OPTIONS = (
                  "[default: what the size needs]"),
     click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
                  help="Clocks a pixel lasts on the video output.  [default: 2]"),
+    click.option("--setup", type=click.Choice(list(SETUPS)),
+                 help="Who sets triangles up: the host, or the machine itself, with one divider "
+                 "of each kind or a pipeline of them.  [default: host]"),
 )
 
 

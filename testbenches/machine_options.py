@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
-from ..golden.configuration import PRESETS, MachineConfiguration
+from ..golden.configuration import MAXIMUM_SETUP_INTERVAL, PRESETS, MachineConfiguration
 from ..golden.display_list import DisplayList
 from ..golden.errors import InputError
 from ..golden.plan import Plan, check_max_error, full_machine, plan
@@ -18,6 +18,14 @@ DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
 DEFAULT_SIZE = {"width": 64, "height": 64}
 
 ShadingChoice = Literal["auto", "flat", "gouraud"]
+SetupChoice = Literal["host", "small", "fast"]
+
+#: What each choice of set-up is in the configuration.
+SETUPS: dict[SetupChoice, dict[str, Any]] = {
+    "host": {"setup": "host"},
+    "small": {"setup": "hardware", "setup_interval": MAXIMUM_SETUP_INTERVAL},
+    "fast": {"setup": "hardware", "setup_interval": 1},
+}
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,8 @@ class MachineOptions:
     ``shading``           ``auto`` interpolates colours where the scene has more than one a triangle
     ``words``             of each memory unit
     ``clocks_per_pixel``  clocks a pixel lasts on the video output
+    ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
+                          divider of each kind or ``fast`` with a stage for each bit
     """
 
     preset: str | None = None
@@ -42,6 +52,7 @@ class MachineOptions:
     shading: ShadingChoice = "auto"
     words: int | None = None
     clocks_per_pixel: int | None = None
+    setup: SetupChoice | None = None
 
     def machine(self) -> dict[str, Any]:
         """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
@@ -57,6 +68,8 @@ class MachineOptions:
                 raise InputError("--max-error: chooses the fraction bits itself; leave out "
                                  "--fraction-bits")
             settled["fraction_bits"] = "exact"  # so the preset's are not meant
+        if self.setup is not None:
+            settled |= SETUPS[self.setup]
         if self.shading != "auto":
             settled["shading"] = self.shading
         if self.size is not None:

@@ -70,23 +70,26 @@ class Simulation:
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
                    fraction_bits: int | None = None) -> list[int]:
-    """Frame start, prepared triangles, frame end.
+    """Frame start, triangles, frame end.
 
-    The host does the triangle set-up here, at the resolution the machine reports.  With
+    Where the machine has no set-up of its own the host does it here, at the resolution that the
+    machine reports.  With
     ``fraction_bits``, fewer than the machine's, its planes are rounded to these, so that it draws
     the picture of a machine that has no more: see ``draws_as_coarser``.  Raises ``InputError``
     for a list that is too wide for the machine.
     """
+    fitting = fitted(configuration, display_list)
+    start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
+    if configuration.setup == "hardware" and fraction_bits is None:
+        return [start, *commands.triangles(configuration, fitting), end]
     interlace = configuration.interlace
     own = configuration.fraction_bits
-    prepared = prepare(fitted(configuration, display_list),
+    prepared = prepare(fitting,
                        fraction_bits=own if fraction_bits is None else fraction_bits,
                        shading=configuration.shading,
                        x_shift=interlace.x_shift, y_shift=interlace.y_shift)
     prepared = in_finer_words(prepared, own)
-    return [commands.frame_start(display_list.background),
-            *commands.prepared_triangles(configuration, prepared),
-            commands.command(Opcode.FRAME_END)]
+    return [start, *commands.prepared_triangles(configuration, prepared), end]
 
 
 def simulate(
@@ -152,11 +155,12 @@ def draws_as_coarser(configuration: MachineConfiguration, fraction_bits: int) ->
 def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
     """More cycles than any frame can take: beyond, the machine hangs.
 
-    Every triangle covers the screen, every pixel costs a scan slot, a read and a write; then
-    the stalls of the most patient host, and some scans.
+    Every triangle waits for three divisions and covers the screen, every pixel costs a scan slot,
+    a read and a write; then the stalls of the most patient host, and some scans.
     """
     pixels = configuration.width * configuration.height
-    return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64)
+    divisions = 3 * configuration.setup_interval
+    return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)
             + 30 * configuration.interlace.units * configuration.interlace.words
             + 4 * configuration.cycles_per_scan)
 

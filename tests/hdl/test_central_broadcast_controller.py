@@ -313,6 +313,34 @@ def test_scans_are_counted_from_the_frame_start_on(delay):
     assert sink.items[-1].value > 0
 
 
+@pytest.mark.parametrize("seed", [None, 0, 1])
+@pytest.mark.parametrize("interval", [1, 256])
+def test_vertices_are_prepared_and_everything_keeps_its_order(seed, interval):
+    """Triangles with and without set-up mixed; commands after them find them announced."""
+    configuration = small_machine("PM", setup="hardware", setup_interval=interval)
+    pick = random.Random(f"mixed {seed}")
+    words, bodies = [commands.frame_start((1, 2, 3))], [(Operation.CLEAR, 1 | 2 << 8 | 3 << 16)]
+    for part in range(6):
+        scene = random_triangles(f"{seed} {part}", pick.randrange(1, 6), width=8, height=8)
+        prepared = commands.prepared_triangles(configuration, prepare(configuration, scene))
+        words += [*(prepared if part % 2 else commands.triangles(configuration, scene))]
+        bodies += [(Operation.DRAW, word >> commands.BODY_OFFSET) for word in prepared]
+        if part == 2:
+            words.append(commands.command(Opcode.READ_COUNTERS))
+            bodies.append((Operation.READ_COUNTERS, None))
+    words.append(commands.command(Opcode.FRAME_END))
+    run = Run(configuration, words, 4 + len(COUNTS) + 2, seed=seed,
+              work=0 if seed is None else 20)
+    found = [run.fields(number) for number in range(2, len(run.cage.packets))]
+    assert len(found) == len(bodies)
+    for (operation, body), (expected_operation, expected) in zip(found, bodies, strict=True):
+        assert operation == expected_operation
+        assert expected is None or body == expected
+    assert [kind for kind, _ in run.responses[4:]] == [
+        *(kind for kind, _ in COUNTS), ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
+    assert run.clock_of(ResponseKind.FRAME_DRAWN) > run.cage.packets[-1][0]
+
+
 def test_latency_and_throughput():
     """A prepared triangle is broadcast in the clock in which it is taken; one every clock."""
     configuration = small_machine("PM")

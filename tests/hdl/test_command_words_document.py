@@ -143,6 +143,18 @@ def test_prepared_triangle_offsets():
         assert row["bits"] in values or row["bits"] == "1"
 
 
+def test_triangle_offsets():
+    documented = [(row["field, tiny"], int(row["first bit"]), int(row["bits"]))
+                  for row in table("field, tiny", "first bit")]
+    hardware = list(hardware_fields(layouts.struct_layout(commands.triangle_layout(TINY)),
+                                    commands.BODY_OFFSET))
+    assert documented == hardware[:6] and len(hardware) == 18
+    vertex = documented[-1][1] + documented[-1][2] - commands.BODY_OFFSET
+    assert [offset for _, offset, _ in hardware[6:12]] == [
+        offset + vertex for _, offset, _ in documented]
+    assert f"Vertices 1 and 2 follow, {vertex} bits each." in DOCUMENT.read_text(encoding="utf-8")
+
+
 def test_frame_start_offsets():
     documented = [(row["field"], int(row["first bit"]), int(row["bits"]))
                   for row in table("field", "first bit")]
