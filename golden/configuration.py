@@ -99,6 +99,8 @@ class MachineConfiguration:
             ("fifo_depth", 2, 4096),
             ("clocks_per_pixel", 2, 256),
             ("setup_interval", 1, MAXIMUM_SETUP_INTERVAL),
+            ("depth_integer_bits", 0, 64),
+            ("channel_integer_bits", 0, 64),
         ):
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):

@@ -1,5 +1,7 @@
 """The configuration of a machine: what it derives, what it refuses, the presets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,12 @@ GOOD = {"cards": "PMMPMM", "width": 16, "height": 8}
     "shading": ["phong", "", None],
     "cards": ["", "P", "M", "MPM", "PMMM", "PMZ", "2x(PM"],
     "timing": [compact_timing(8, 16), compact_timing(16, 9)],
+    "coordinate_bits": [-1, 15, 7.0],
+    "edge_column_bits": [-1, 8],
+    "edge_remainder_bits": [-1, 15],
+    "edge_fraction_bits": [-1, 18],
+    "depth_integer_bits": [-1, 65, None],
+    "channel_integer_bits": [-1, 65],
 }.items())
 def test_bad_fields(field, values):
     for value in values:
@@ -110,6 +118,20 @@ def test_widths_hold_the_precision_contract():
     assert configuration.edge_remainder_bits == 19
     assert configuration.depth_plane_bits == 24 + 2 + 9
     assert configuration.channel_plane_bits >= 8 + 2 + 9
+
+
+def test_narrower_words():
+    """Each follows what it is told; what it is not told holds every triangle."""
+    wide = MachineConfiguration(**GOOD)
+    assert (wide.coordinate_bits, wide.edge_column_bits, wide.edge_remainder_bits) == (14, 7, 14)
+    assert wide.edge_fraction_bits == 17  # 16383 * 8 < 2**17
+    narrow = MachineConfiguration(**GOOD, edge_remainder_bits=5, depth_integer_bits=9,
+                                  channel_integer_bits=3)
+    assert narrow.edge_fraction_bits == 8  # 31 * 8 < 2**8
+    assert narrow.edge_word_bits == 7 + 8
+    assert (narrow.depth_plane_bits, narrow.channel_plane_bits) == (9 + 16, 3 + 16)
+    assert replace(narrow, fraction_bits=2).depth_plane_bits == 9 + 2
+    assert replace(wide, fraction_bits=2).depth_plane_bits < wide.depth_plane_bits
 
 
 def scene(flat):

@@ -14,6 +14,7 @@ from cardcage.golden.configuration import MachineConfiguration, configure
 from cardcage.golden.display_list import DisplayList
 from cardcage.golden.errors import InputError
 from cardcage.golden.fixed import to_signed
+from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.plan import (
     error_fraction_bits,
     full_machine,
@@ -180,6 +181,37 @@ def test_carried_depth_has_no_bit_to_spare():
         bits = needs.exact_fraction_bits
         low, high = carried_range(display_list, bits)
         assert signed_bits([low, high]) == needs.depth_integer_bits(bits) == depth.bit_length() + 1
+
+
+@pytest.mark.parametrize("max_error", [0, 1, 50])
+def test_hard_cases_in_planned_words(max_error):
+    """What each case is hard on fits: edges on every row, depth and colour at every fragment."""
+    for name in HARD_CASES:
+        display_list = make_display_list(f"hard:{name}").display_list
+        machine = plan(display_list, cards=CARDS, max_error=max_error).configuration
+        listed, bits = fitted(machine, display_list), machine.fraction_bits
+        drawn = bit_true.draw(listed, fraction_bits=bits)
+        assert abs(drawn.depth - exact.draw(display_list).depth).max() <= max_error, name
+        prepared = prepare(listed, fraction_bits=bits, shading=machine.shading)
+        for edges, begin, end in ((prepared.long, prepared.top, prepared.bottom),
+                                  (prepared.upper, prepared.top, prepared.middle),
+                                  (prepared.lower, prepared.middle, prepared.bottom)):
+            if len(prepared):
+                assert wrong_columns(edges, end - begin, machine.edge_column_bits,
+                                     machine.edge_fraction_bits) == 0, name
+        if listed.width * listed.height > 1 << 16 or listed.triangles > 2000:
+            continue
+        found = exact.fragments(listed)
+        place = np.searchsorted(prepared.primitive, found.primitive)
+        where = place, found.x - prepared.left[place], found.y - prepared.top[place]
+        for planes, word_bits, high in [
+                (prepared.depth, machine.depth_plane_bits, listed.depth_limit),
+                *((channel, machine.channel_plane_bits, 255) for channel in prepared.color or ())]:
+            narrow = replace(planes, word_bits=word_bits, **{
+                part: getattr(planes, part) % 2**word_bits
+                for part in ("start", "step_x", "step_y")})
+            np.testing.assert_array_equal(bit_true.evaluate(narrow, bits, *where, high),
+                                          bit_true.evaluate(planes, bits, *where, high), name)
 
 
 LIMITS = {
