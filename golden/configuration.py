@@ -48,6 +48,7 @@ class MachineConfiguration:
                           controller also takes vertices and prepares them itself
     ``setup_interval``    clocks that set-up in hardware may take for a division: 1 is a stage for
                           each step, ``MAXIMUM_SETUP_INTERVAL`` one stage for all
+    ``observe``           the machine also says, in each clock, what every processing element does
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -77,6 +78,7 @@ class MachineConfiguration:
     allow_orphans: bool = False
     setup: Literal["host", "hardware"] = "host"
     setup_interval: int = 1
+    observe: bool = False
     coordinate_bits: int = 0
     edge_column_bits: int = 0
     edge_remainder_bits: int = 0

@@ -9,7 +9,9 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden import commands
 from ..golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
+from ..golden.commands import Opcode
 from ..golden.configuration import MachineConfiguration
+from .activity import MachineActivity, activity_layout
 from .central_broadcast_controller import CentralBroadcastController
 from .layouts import response_layout
 from .memory_unit import MemoryUnit
@@ -32,6 +34,9 @@ class Machine(wiring.Component):
     commands: In(stream of command words)
     responses: Out(stream of response_layout)
     pins: Out(VideoPins)
+    activity: Out(activity_layout)
+        What each processing element does in this clock; only where the configuration says
+        ``observe``.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -46,6 +51,8 @@ class Machine(wiring.Component):
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
             "pins": Out(VideoPins()),
+            **({"activity": Out(activity_layout(configuration.processing_elements))}
+               if configuration.observe else {}),
         })
 
     def _build(self, card):
@@ -82,7 +89,22 @@ class Machine(wiring.Component):
             wiring.connect(wires(m, f"slot_{slot}_wires"), left.right, card.left)
             left = card
         self._connect_lines_to_all(m, total=left.right.id)
+        if self.configuration.observe:
+            self._observe(m)
         return m
+
+    def _observe(self, m):
+        elements = self.processing_elements
+        m.submodules.observer = observer = MachineActivity(elements=len(elements))
+        opcode = self.commands.payload[:commands.OPCODE_BITS]
+        m.d.comb += [
+            observer.blocked.eq(~self.controller.broadcast.ready),
+            observer.more.eq(self.commands.valid & ((opcode == Opcode.TRIANGLE)
+                                                    | (opcode == Opcode.PREPARED_TRIANGLE))),
+            self.activity.eq(observer.activity),
+        ]
+        m.d.comb += [said.eq(element.activity)
+                     for said, element in zip(observer.elements, elements, strict=True)]
 
     def _connect_lines_to_all(self, m, total):
         controller, generator = self.controller, self.scan_generator

@@ -4,7 +4,9 @@ from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
 from amaranth.lib.wiring import In, Out
 
+from ..golden.activity import ACTIVITY_BITS
 from ..golden.configuration import MachineConfiguration
+from .activity import ElementActivity
 from .backplane import BroadcastLines, Connector
 from .clear import Clear
 from .depth_test import DepthTest
@@ -52,6 +54,8 @@ class ProcessingElement(wiring.Component):
     total: In(id_bits)
         Number of memory units in the cage.
     broadcast: In(BroadcastLines)
+    activity: Out(4)
+        What it does in this clock; only where the configuration says ``observe``.
     """
 
     #: FIFO 2, walker's load 1, span start 2, fragment stepper 2.
@@ -65,6 +69,7 @@ class ProcessingElement(wiring.Component):
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
             "broadcast": In(BroadcastLines(configuration)),
+            **({"activity": Out(ACTIVITY_BITS)} if configuration.observe else {}),
         })
 
     def elaborate(self, platform):
@@ -141,6 +146,8 @@ class ProcessingElement(wiring.Component):
             wiring.connect(lines, user.memory, source)
         wiring.connect(lines, selector.lines, wiring.flipped(self.right.lines))
         self._count(m, control, depth_test)
+        if configuration.observe:
+            self._observe(m, control, walker, depth_test)
 
         responses = wires(m, "response_wires")
         wiring.connect(responses, control.responses, link.own)
@@ -165,3 +172,20 @@ class ProcessingElement(wiring.Component):
         with m.If(control.clear_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]
         m.d.comb += [control.fragments.eq(fragments), control.busy_cycles.eq(busy_cycles)]
+
+    def _observe(self, m, control, walker, depth_test):
+        """Listens to the walker and the depth test, some clocks further on."""
+        m.submodules.observer = observer = ElementActivity(
+            delay=SpanStart.latency + FragmentStepper.latency)
+        fragments, lines = depth_test.fragments, self.right.lines
+        m.d.comb += [
+            observer.offered.eq(fragments.valid),
+            observer.taken.eq(fragments.valid & fragments.ready),
+            observer.writing.eq(lines.write.valid & (lines.write.unit == fragments.payload.unit)
+                                & ~lines.write_busy),
+            observer.preparing.eq(walker.preparing),
+            observer.empty_row.eq(walker.empty_row),
+            observer.walking.eq(walker.triangles.valid),
+            observer.service.eq(~control.idle & ~control.triangles.valid & ~control.drawing),
+            self.activity.eq(observer.activity),
+        ]

@@ -32,6 +32,8 @@ class SpanWalker(wiring.Component):
     triangles: In(stream of prepared triangles)
     spans: Out(stream of span_layout)
         Rows downwards, blocks in order; no empty spans.
+    preparing, empty_row: Out(1)
+        In this clock it loads or takes up the lattice; it passes a row without a span.
 
     Fuchs & Johnson, figure 13 and the text around it: the regular pattern that
     allows rapid incremental computation.
@@ -45,6 +47,8 @@ class SpanWalker(wiring.Component):
             "end": In(configuration.id_bits),
             "triangles": In(stream.Signature(prepared_triangle_layout(configuration))),
             "spans": Out(stream.Signature(span_layout(configuration))),
+            "preparing": Out(1),
+            "empty_row": Out(1),
         })
 
     def elaborate(self, platform):
@@ -81,6 +85,7 @@ class SpanWalker(wiring.Component):
 
         with m.FSM():
             with m.State("LOAD"), m.If(self.triangles.valid):
+                m.d.comb += self.preparing.eq(1)
                 m.d.comb += [edge.load.eq(1) for edge in edges.values()]
                 m.d.sync += [
                     after.eq(block.after),
@@ -99,6 +104,7 @@ class SpanWalker(wiring.Component):
                 with m.Else():
                     m.next = "STRIDE"
             with m.State("STRIDE"):
+                m.d.comb += self.preparing.eq(1)
                 m.d.comb += [edge.double.eq(1) for edge in edges.values()]
                 m.d.comb += [
                     edges["long"].advance.eq(upper_steps[:1]),
@@ -115,7 +121,8 @@ class SpanWalker(wiring.Component):
             with m.State("WALK"):
                 empty = self._span(m, edges, y, x_offset, x_stride_bits)
                 inside = y < triangle.bottom
-                m.d.comb += self.spans.valid.eq(inside & ~empty)
+                m.d.comb += [self.spans.valid.eq(inside & ~empty),
+                             self.empty_row.eq(~inside | empty)]
                 with m.If(~inside | empty | self.spans.ready):
                     in_upper = y < triangle.middle
                     m.d.comb += [

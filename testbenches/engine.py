@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..golden.commands import ResponseKind
 from ..golden.configuration import MachineConfiguration
+from .activity import ActivityRecord
 
 #: Called now and then with the cycles simulated and the responses received so far; with 0 cycles
 #: when a model begins to be compiled.
@@ -58,7 +59,8 @@ class EngineRun:
     ``seconds`` is the simulation, files included; ``build_seconds`` what it took to compile a
     model before, 0 where none had to be.  ``engine`` is who ran it, ``notes`` what the user should
     know of it.  ``accepted``: int64, the cycle in which the machine took each command; None where
-    the engine does not tell.
+    the engine does not tell.  ``activity``: what the processing elements did while they drew, for
+    a machine that is built to ``observe``, where the engine records it.
     """
 
     responses: Sequence[tuple[ResponseKind, int, int]]
@@ -69,6 +71,7 @@ class EngineRun:
     engine: str = ""
     notes: tuple[str, ...] = ()
     accepted: NDArray[np.int64] | None = None
+    activity: Sequence[ActivityRecord] = ()
 
 
 class Engine(Protocol):

@@ -7,11 +7,12 @@ import time
 from contextlib import nullcontext
 
 import numpy as np
-from amaranth.hdl import Cat, Shape
+from amaranth.hdl import Cat, Const, Shape, Value
 from amaranth.sim import Simulator
 
 from ..golden.commands import ResponseKind
 from ..hdl.machine import Machine
+from .activity import ActivityWatch
 from .engine import EngineRun, Job, Progress
 from .pace import Pace
 from .video_monitor import VideoMonitor
@@ -41,6 +42,8 @@ class _Run:
         self.accepted: list[int] = []
         self.shown_cycle: int | None = None
         self.cycle = 0
+        self.watch = (ActivityWatch(job.configuration.processing_elements)
+                      if job.configuration.observe else None)
 
     def simulate(self) -> EngineRun:
         simulator = Simulator(self.machine)
@@ -53,7 +56,8 @@ class _Run:
             simulator.run()
         return EngineRun(self.responses, self.monitor.scans, self.cycle,
                          time.perf_counter() - began, engine=PysimEngine.name,
-                         accepted=np.array(self.accepted, np.int64))
+                         accepted=np.array(self.accepted, np.int64),
+                         activity=self.watch.records if self.watch else ())
 
     def _scramble(self, ctx) -> None:
         """Every memory word random, as after power-on."""
@@ -88,10 +92,16 @@ class _Run:
         ctx.set(responses.ready, receive.high)
         samples = ctx.tick().sample(
             commands.ready, responses.valid, responses.payload, pins.pixel, pins.active,
-            pins.vertical_sync, Cat(pins.red, pins.green, pins.blue))
-        async for _, _, taken, given, response, is_pixel, active, in_sync, color in samples:
+            pins.vertical_sync, Cat(pins.red, pins.green, pins.blue), self._activity_lines())
+        async for (_, _, taken, given, response, is_pixel, active, in_sync, color,
+                   activity) in samples:
             self.cycle += 1
             offered, open_ = send.high, receive.high
+            if self.watch is not None:
+                self.watch.clock(
+                    self.cycle, activity,
+                    self.job.commands[len(self.accepted)] if taken and offered else None,
+                    response.kind if given and open_ else None)
             if taken and offered:
                 self.accepted.append(self.cycle)
                 next_word()
@@ -112,6 +122,9 @@ class _Run:
                     return
             if self.cycle % PROGRESS_CYCLES == 0:
                 self._report()
+
+    def _activity_lines(self) -> Value:
+        return Value.cast(self.machine.activity) if self.watch else Const(0)
 
     def _receive(self, response) -> None:
         kind = ResponseKind(response.kind)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import struct
 import subprocess
 import tempfile
 import time
+from dataclasses import replace
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..golden.activity import ACTIVITY_BITS
 from ..golden.commands import ResponseKind, command_words
 from ..golden.configuration import MachineConfiguration
 from ..hdl.verilog import CARD_MODULES, machine_verilog
+from .activity import BUCKETS, KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
 from .model_cache import cached, content_hash
 from .verilator_tool import VerilatorTool, find_verilator
@@ -67,9 +70,9 @@ class VerilatorEngine:
             arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
                          _seed(job.stall_seed), job.maximum_cycles or 0]
             _watch([str(argument) for argument in arguments], progress)
-            responses, scans, cycles, accepted = _read(job, results.read_bytes())
-        return EngineRun(responses, scans, cycles, time.perf_counter() - built,
-                         built - began if fresh else 0.0, engine=self.name, accepted=accepted)
+            run = _read(job, results.read_bytes())
+        return replace(run, seconds=time.perf_counter() - built,
+                       build_seconds=built - began if fresh else 0.0)
 
     def build(self, configuration: MachineConfiguration,
               progress: Progress | None = None) -> tuple[Path, bool]:
@@ -110,8 +113,12 @@ def _constants(configuration: MachineConfiguration) -> str:
         "WIDTH": configuration.width,
         "HEIGHT": configuration.height,
         "VERTICAL_SYNC_POSITIVE": int(configuration.timing.vertical_sync_positive),
+        "ACTIVITY_BITS": ACTIVITY_BITS,
+        "BUCKETS": BUCKETS,
     }
-    return "".join(f"constexpr unsigned {name} = {value};\n" for name, value in values.items())
+    observed = configuration.processing_elements if configuration.observe else 0
+    return f"#define OBSERVED_ELEMENTS {observed}\n" + "".join(
+        f"constexpr unsigned {name} = {value};\n" for name, value in values.items())
 
 
 def _seed(seed: int | None) -> int:
@@ -141,14 +148,14 @@ def _watch(arguments: list[str], progress: Progress | None) -> None:
         raise RuntimeError(f"the compiled model failed with {process.returncode}: {failure}")
 
 
-def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]], list[Scan], int,
-                                             NDArray[np.int64]]:
-    """Responses, scans, cycles and when each command was taken, from the program's records."""
+def _read(job: Job, results: bytes) -> EngineRun:
+    """The program's records; ``TimeoutError`` or ``AssertionError`` where it says so."""
     configuration = job.configuration
     shape = (configuration.height, configuration.width, 3)
     pixels = configuration.height * configuration.width * 3
     responses: list[tuple[ResponseKind, int, int]] = []
     scans: list[Scan] = []
+    activity: list[ActivityRecord] = []
     accepted = np.zeros(0, np.int64)
     place = 0
     while True:
@@ -162,6 +169,12 @@ def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]]
             picture = np.frombuffer(results, np.uint8, pixels, place + 9).reshape(shape)
             scans.append(Scan(cycle, picture))
             place += 9 + pixels
+        elif record == b"A":
+            begin, clocks, bucket_clocks, buckets = struct.unpack_from("<4Q", results, place + 1)
+            size = buckets, configuration.processing_elements, KINDS
+            counts = np.frombuffer(results, "<u4", math.prod(size), place + 33).reshape(size)
+            activity.append(ActivityRecord(begin, clocks, bucket_clocks, counts.astype(np.int64)))
+            place += 33 + counts.nbytes
         elif record == b"C":
             [sent] = struct.unpack_from("<Q", results, place + 1)
             accepted = np.frombuffer(results, "<i8", sent, place + 9)
@@ -174,7 +187,8 @@ def _read(job: Job, results: bytes) -> tuple[list[tuple[ResponseKind, int, int]]
     if why != b"D":
         raise TimeoutError(f"no end after {cycles} cycles: {len(accepted)} of {len(job.commands)} "
                            f"commands taken, {len(responses)} of {job.responses} responses")
-    return responses, scans, cycles, accepted
+    return EngineRun(responses, scans, cycles, 0.0, engine=VerilatorEngine.name,
+                     accepted=accepted, activity=activity)
 
 
 def _responses(results: bytes, place: int) -> list[tuple[ResponseKind, int, int]]:

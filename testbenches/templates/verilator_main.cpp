@@ -4,7 +4,8 @@
 //
 // COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.
 // RESULTS gets records: 'R' kind value cycle, 'S' cycle and a picture, 'C' the number of commands
-// taken and the cycle of each, 'E' cycles and why.
+// taken and the cycle of each, 'E' cycles and why; of a machine that is observed also 'A', first
+// cycle, clocks, clocks a bucket, buckets, and for each bucket, element and kind its clocks.
 // Progress goes to the standard output: cycles and responses, now and then.
 //
 // With the single argument "bare" and a number of cycles it only toggles the clock.
@@ -20,14 +21,17 @@
 #include "Vmachine.h"
 #include "verilated.h"
 
-#include "machine_constants.h"  // COMMAND_WORDS, WIDTH, HEIGHT, VERTICAL_SYNC_POSITIVE
+// COMMAND_WORDS, WIDTH, HEIGHT, VERTICAL_SYNC_POSITIVE; OBSERVED_ELEMENTS, ACTIVITY_BITS, BUCKETS
+#include "machine_constants.h"
 
 // Verilator writes the second underscore of a port's name as its code.
 #define PORT(interface, member) interface##___05F##member
 
 namespace {
 
-constexpr uint8_t FRAME_SHOWN = 6;
+constexpr uint8_t FRAME_DRAWN = 5, FRAME_SHOWN = 6;
+constexpr uint8_t FRAME_START = 1, TRIANGLE = 2, PREPARED_TRIANGLE = 3, READ_COUNTERS = 6;
+constexpr uint8_t OPCODE_MASK = 0xf;
 constexpr uint64_t PROGRESS_CYCLES = 1 << 16;
 
 // One handshake signal of the host: high, or low for a random while before.
@@ -106,6 +110,75 @@ class Monitor {
     const char* failure_ = "";
 };
 
+#if OBSERVED_ELEMENTS
+// Counts what each processing element does, in buckets that double while the record grows.
+class Watch {
+  public:
+    explicit Watch(FILE* results) : results_(results) {}
+
+    // An opcode is taken and a response given in this clock, unless 0.
+    void clock(uint64_t cycle, const Vmachine& machine, uint8_t opcode, uint8_t response) {
+        if (opcode == READ_COUNTERS) {
+            end();
+        } else if (!watching_ && (opcode == FRAME_START || opcode == TRIANGLE
+                                  || opcode == PREPARED_TRIANGLE)) {
+            watching_ = true;
+            begin_ = cycle;
+            clocks_ = 0;
+            width_ = 1;
+            std::memset(counts_, 0, sizeof counts_);
+        }
+        if (!watching_) return;
+        if (clocks_ == BUCKETS * width_) halve();
+        auto& bucket = counts_[clocks_++ / width_];
+        for (unsigned element = 0; element < OBSERVED_ELEMENTS; ++element)
+            ++bucket[element][field(machine.activity, element * ACTIVITY_BITS)];
+        if (response == FRAME_DRAWN) end();
+    }
+
+  private:
+    static constexpr unsigned KINDS = 1 << ACTIVITY_BITS;
+
+    template <typename Word> static unsigned field(const Word& word, unsigned bit) {
+        return static_cast<unsigned>(word >> bit) & (KINDS - 1);
+    }
+    template <std::size_t Words>
+    static unsigned field(const VlWide<Words>& word, unsigned bit) {
+        return word.at(bit / 32) >> bit % 32 & (KINDS - 1);  // no field crosses a word
+    }
+    void halve() {
+        uint32_t* const counts = &counts_[0][0][0];
+        constexpr unsigned SIZE = OBSERVED_ELEMENTS * KINDS;
+        for (unsigned bucket = 0; bucket < BUCKETS; ++bucket)
+            for (unsigned place = 0; place < SIZE; ++place) {
+                const uint32_t count = counts[bucket * SIZE + place];
+                counts[bucket * SIZE + place] = 0;
+                counts[bucket / 2 * SIZE + place] += count;
+            }
+        width_ *= 2;
+    }
+    void end() {
+        if (!watching_) return;
+        watching_ = false;
+        const uint64_t buckets = (clocks_ + width_ - 1) / width_;
+        std::fputc('A', results_);
+        for (const uint64_t value : {begin_, clocks_, width_, buckets})
+            std::fwrite(&value, sizeof value, 1, results_);
+        std::fwrite(counts_, sizeof counts_[0], buckets, results_);
+    }
+    FILE* results_;
+    bool watching_ = false;
+    uint64_t begin_ = 0, clocks_ = 0, width_ = 1;
+    uint32_t counts_[BUCKETS][OBSERVED_ELEMENTS][KINDS];
+};
+#else
+class Watch {
+  public:
+    explicit Watch(FILE*) {}
+    void clock(uint64_t, const Vmachine&, uint8_t, uint8_t) {}
+};
+#endif
+
 std::vector<uint32_t> read_words(const char* path) {
     FILE* file = std::fopen(path, "rb");
     if (!file) { std::perror(path); std::exit(2); }
@@ -156,6 +229,7 @@ int main(int argc, char** argv) {
 
     Pace send(stall_seed, 0), receive(stall_seed, 1);
     Monitor monitor(results);
+    const auto watch = std::make_unique<Watch>(results);
     std::vector<uint64_t> accepted;
     accepted.reserve(commands);
     uint64_t received = 0, cycle = 0, shown_cycle = 0;
@@ -181,6 +255,8 @@ int main(int argc, char** argv) {
         const bool given = receive.high() && machine.PORT(responses, valid);
         const uint64_t response = machine.PORT(responses, payload);
         ++cycle;
+        watch->clock(cycle, machine, taken ? words[accepted.size() * COMMAND_WORDS] & OPCODE_MASK : 0,
+                     given ? response & 0xff : 0);
         bool finished = false;
         if (machine.PORT(pins, pixel)) {
             if (!monitor.sample(cycle, machine.PORT(pins, active), machine.PORT(pins, vertical_sync),
