@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from .bench_command import bench_command
 from .command_group import EXIT_DIFFERENT, CommandGroup, warn
 from .command_options import machine_options
 from .engines import AUTO, ENGINES
@@ -16,6 +17,7 @@ from .hard_cases_table import hard_cases_json, hard_cases_table, hard_cases_text
 from .machine_options import MachineOptions
 from .model_cache import cache_folder, cache_size, clear_cache
 from .plan_command import plan_command
+from .precision_command import precision_command
 from .progress import progress_bar
 from .render import DEFAULT_SCENE, RenderOptions, prepare_render
 from .render_summary import render_summary
@@ -163,4 +165,6 @@ def scenes(hard: bool, as_json: bool) -> None:
         click.echo(to_text())
 
 
+main.add_command(bench_command)
 main.add_command(plan_command)
+main.add_command(precision_command)
