@@ -94,11 +94,12 @@ def render(command_line: str, scene: str, waveform: Path | None, out: Path,
 
 
 @main.command()
-@click.option("--clear", is_flag=True, help="Remove every compiled model.")
+@click.option("--clear", is_flag=True, help="Remove all of it.")
 def cache(clear: bool) -> None:
-    """Show where compiled models are kept, or remove them.
+    """Show where compiled models and long measurements are kept, or remove them.
 
-    A model is compiled once for each machine and kept; CARDCAGE_CACHE names another folder.
+    A model is compiled once for each machine, a machine placed and routed once; CARDCAGE_CACHE
+    names another folder.
 
     \b
     Examples:

@@ -1,4 +1,4 @@
-"""Compiled models, kept by the hash of everything they were made from."""
+"""Compiled models and long measurements, kept by the hash of everything they were made from."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import platformdirs
 
-#: Where models are kept; the environment variable CARDCAGE_CACHE names another folder.
+#: Where they are kept; the environment variable CARDCAGE_CACHE names another folder.
 ENVIRONMENT_VARIABLE = "CARDCAGE_CACHE"
 
 
@@ -60,7 +60,7 @@ def cached(key: str, build: Callable[[Path], object]) -> tuple[Path, bool]:
 
 
 def clear_cache() -> int:
-    """Remove every model; how many bytes that frees."""
+    """Remove all of it; how many bytes that frees."""
     size = cache_size()
     shutil.rmtree(cache_folder(), ignore_errors=True)
     return size
