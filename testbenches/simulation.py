@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -73,10 +73,10 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     """Frame start, triangles, frame end.
 
     Where the machine has no set-up of its own the host does it here, at the resolution that the
-    machine reports.  With
-    ``fraction_bits``, fewer than the machine's, its planes are rounded to these, so that it draws
-    the picture of a machine that has no more: see ``draws_as_coarser``.  Raises ``InputError``
-    for a list that is too wide for the machine.
+    machine reports.  With ``fraction_bits``, fewer than the machine's, the host does it with planes
+    rounded to these: the machine then draws the picture of one that has no more, value for value
+    and clock for clock, if its words have the integer bits for the greater error.  Raises
+    ``InputError`` for a list that is too wide for the machine.
     """
     fitting = fitted(configuration, display_list)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
@@ -136,20 +136,6 @@ def frame_job(
         waveform=waveform,
         maximum_cycles=cycle_bound(configuration, words),
     )
-
-
-def draws_as_coarser(configuration: MachineConfiguration, fraction_bits: int) -> bool:
-    """Whether the machine, told planes of ``fraction_bits``, draws what one built for them draws,
-    value for value and clock for clock.
-
-    Nothing but the widths of the interpolants depends on the fraction bits, and words with zeros
-    at the end sum to such words.  Only a coarser machine may have more guard bits than this one.
-    """
-    coarser = replace(configuration, fraction_bits=fraction_bits)
-    more = configuration.fraction_bits - fraction_bits
-    return more >= 0 and all(
-        getattr(configuration, name) - more >= getattr(coarser, name)
-        for name in ("depth_plane_bits", "channel_plane_bits"))
 
 
 def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
