@@ -20,8 +20,8 @@ from cardcage.testbenches.machine_options import MachineOptions, machine_for_sce
 
 COARSE = (6, 0)
 
-#: Everything that was asked for, in its words, and the cases that are it.
-ASKED_FOR = {
+#: Every situation that the catalogue is to hold, and the cases that are it.
+SITUATIONS = {
     "shared edge": ["shared-edge"],
     "closed fan of 720 slivers around a vertex on a pixel centre": ["sliver-fan"],
     "all vertices on pixel centres": ["vertices-on-centres"],
@@ -73,8 +73,8 @@ def assert_same(got, expected):
         np.testing.assert_array_equal(getattr(got, field), getattr(expected, field), field)
 
 
-def test_every_case_that_was_asked_for_is_there_and_no_other():
-    names = [name for cases in ASKED_FOR.values() for name in cases]
+def test_every_situation_has_its_cases_and_every_case_its_situation():
+    names = [name for cases in SITUATIONS.values() for name in cases]
     assert len(names) == len(set(names))
     assert set(names) == set(HARD_CASES)
 
