@@ -9,6 +9,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .bench_cases import Peer, peers
 from .page import chart_style, svg_element
@@ -112,6 +113,7 @@ def _sweep(axes: Axes, precision: Precision) -> None:
                  label="float32 Z-buffer, greatest")
     axes.set_yscale("symlog", linthresh=0.1)
     axes.set_ylim(bottom=0)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("fraction bits")
     axes.set_ylabel(f"LSB of {precision.scene.display_list.depth_bits} depth bits; pixels")
     axes.legend(fontsize=8, frameon=False)
