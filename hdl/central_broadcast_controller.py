@@ -48,6 +48,8 @@ class CentralBroadcastController(wiring.Component):
         A scan begins.
     front: Out(1)
         Which of the two colours in the memory units is shown.
+    more: Out(1)
+        Triangles are offered or set up; only where the configuration says ``observe``.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -60,6 +62,7 @@ class CentralBroadcastController(wiring.Component):
             "broadcast": Out(BroadcastLines(configuration)),
             "scan_start": In(1),
             "front": Out(1),
+            **({"more": Out(1)} if configuration.observe else {}),
         })
 
     def elaborate(self, platform):
@@ -111,6 +114,11 @@ class CentralBroadcastController(wiring.Component):
                 m.d.comb += [packet.body.draw.eq(setup.triangles.payload),
                              setup.triangles.ready.eq(self.broadcast.ready)]
                 announce(Operation.DRAW)
+        if self.configuration.observe:
+            offered = self.commands.valid & ((opcode == Opcode.TRIANGLE)
+                                             | (opcode == Opcode.PREPARED_TRIANGLE))
+            m.d.comb += self.more.eq(
+                offered | (setup.busy if self.configuration.setup == "hardware" else 0))
 
         # Unless the controller itself speaks, the processing elements do.
         m.d.comb += [

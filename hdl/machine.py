@@ -9,7 +9,6 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden import commands
 from ..golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
-from ..golden.commands import Opcode
 from ..golden.configuration import MachineConfiguration
 from .activity import MachineActivity, activity_layout
 from .central_broadcast_controller import CentralBroadcastController
@@ -96,11 +95,9 @@ class Machine(wiring.Component):
     def _observe(self, m):
         elements = self.processing_elements
         m.submodules.observer = observer = MachineActivity(elements=len(elements))
-        opcode = self.commands.payload[:commands.OPCODE_BITS]
         m.d.comb += [
             observer.blocked.eq(~self.controller.broadcast.ready),
-            observer.more.eq(self.commands.valid & ((opcode == Opcode.TRIANGLE)
-                                                    | (opcode == Opcode.PREPARED_TRIANGLE))),
+            observer.more.eq(self.controller.more),
             self.activity.eq(observer.activity),
         ]
         m.d.comb += [said.eq(element.activity)

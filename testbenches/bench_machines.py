@@ -96,5 +96,6 @@ def _machine(elements: int, units: int, ports: int, setup: str, block: int,
     configuration = full_machine(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
+        observe=True,  # costs no clock
         **{name: value for name, value in chosen.items() if name in _CHOICES})
     return BenchMachine(elements, units, ports, setup, block, fifo, configuration)

@@ -24,6 +24,7 @@ from ..golden.commands import Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
 from ..golden.errors import InputError
 from ..golden.exact import depth_complexity
+from .activity import ActivityRecord
 from .bench_cases import CaseLists, Order
 from .compare import compare
 from .engine import Engine, EngineRun, Job, Progress
@@ -43,6 +44,7 @@ class Measurement:
     ``cycles_once``        T(n): first of n triangles taken … all elements finished
     ``cycles_twice``       T(2n)
     ``element_fragments``  of 2n triangles, per processing element
+    ``activity``           what the processing elements did in T(2n); None where nothing tells
     """
 
     case: str
@@ -52,6 +54,7 @@ class Measurement:
     cycles_once: int
     cycles_twice: int
     element_fragments: tuple[int, ...]
+    activity: ActivityRecord | None = None
 
     @property
     def sustained_cycles(self) -> int:
@@ -201,5 +204,7 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
     assert run.accepted is not None
     once, twice = (int(run.accepted[barrier] - run.accepted[first])
                    for first, barrier in zip(frame.first, frame.barriers, strict=True))
+    # One record until the first counters, the clear; then one for each of the two.
+    activity = run.activity[3 * number + 2] if run.activity else None
     return Measurement(case.name, case.order, case.once.triangles, fragments[0], once, twice,
-                       tuple((counts[2] - counts[1]).tolist()))
+                       tuple((counts[2] - counts[1]).tolist()), activity)

@@ -9,6 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from .activity import ACTIVITY_KINDS
 from .bench import BenchRow
 from .bench_cases import Order, peers
 
@@ -24,8 +25,7 @@ _COLUMNS = ("case", "triangles", "clocks a triangle", "model", "of bound", "cloc
 def bench_text(rows: Sequence[BenchRow]) -> str:
     """Plain lines, the columns aligned, a table for each machine and order."""
     lines = []
-    for title, some in _tables(rows):
-        cells = [_header(), *map(_cells, some)]
+    for title, cells in _tables(rows):
         widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
         lines += [title, *("  ".join(
             [row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells), ""]
@@ -35,24 +35,36 @@ def bench_text(rows: Sequence[BenchRow]) -> str:
 def bench_table(rows: Sequence[BenchRow]) -> None:
     """The same as tables on the terminal."""
     console = Console()
-    for title, some in _tables(rows):
+    for title, (header, *cells) in _tables(rows):
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), title=title,
                       title_justify="left", title_style="bold")
-        for place, column in enumerate(_header()):
+        for place, column in enumerate(header):
             table.add_column(column, justify="left" if place == 0 else "right")
-        for row in some:
-            table.add_row(*_cells(row))
+        for row in cells:
+            table.add_row(*row)
         console.print(table)
         console.print()
     for line in _notes():
         console.print(line, highlight=False, soft_wrap=True)
 
 
-def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[BenchRow]]]:
+def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]:
+    """Title and cells, the header first, of two tables for each machine and order."""
     def title(row: BenchRow) -> str:
         return f"{row.machine.label}; {TITLES[row.order]}"
 
-    return [(name, list(some)) for name, some in groupby(rows, title)]
+    tables = []
+    for name, group in groupby(rows, title):
+        some = list(group)
+        tables.append((name, [_header(), *map(_cells, some)]))
+        observed = [(row.case, row.measured.activity.shares()) for row in some
+                    if row.measured is not None and row.measured.activity is not None]
+        if observed:
+            header = ("case", *(kind.name.replace("_", " ") for kind in ACTIVITY_KINDS))
+            tables.append(("  where the processing elements' clocks went, in %", [
+                header, *((case, *(f"{100 * share:.1f}" for share in shares.values()))
+                          for case, shares in observed)]))
+    return tables
 
 
 def _header() -> tuple[str, ...]:
@@ -129,4 +141,6 @@ def _facts(row: BenchRow) -> dict[str, Any]:
             "element_fragments": list(measured.element_fragments),
             "prediction_error": row.prediction_error,
         }
+        if measured.activity is not None:
+            facts["clocks_of_elements"] = measured.activity.shares()
     return facts
