@@ -31,14 +31,19 @@ class TextTable:
              *(word.rjust(width) for word, width in zip(line[1:], widths[1:], strict=True))]
         ).rstrip() for line in lines)])
 
-    def rich(self) -> Table:
+    def print(self) -> None:
+        """On a terminal: headings wrap at their words, figures never; wider than it if need be."""
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-        for place, column in enumerate(self.columns):
-            table.add_column(column, style="bold" if place == 0 else None,
-                             justify="right" if place else "left", no_wrap=True)
+        widths = [max([*map(len, self.columns[place].split()), *(len(row[place])
+                                                                 for row in self.rows)])
+                  for place in range(len(self.columns))]
+        for place, (column, width) in enumerate(zip(self.columns, widths, strict=True)):
+            table.add_column(column, style="bold" if place == 0 else None, width=width,
+                             justify="right" if place else "left", vertical="bottom")
         for row in self.rows:
             table.add_row(*row)
-        return table
+        wanted = sum(widths) + 2 * len(widths)
+        Console(width=max(wanted, Console().width)).print(table)
 
 
 def tables(precision: Precision) -> list[TextTable]:
@@ -66,14 +71,23 @@ def tables(precision: Precision) -> list[TextTable]:
                    *_end_to_end(point.end_to_end), f"{point.end_to_end.color_maximum:.1f}")
                   for point in precision.formats),
         ),
-        TextTable(
-            "speed, and one processing element on an ECP5-85k, speed grade 6",
-            ("fraction bits", "cycles", "frame", "fragments/clock/PE", "LUT", "FF", "DSP", "BRAM",
-             "LUT RAM", "MHz", "range", "Mfragments/s/PE"),
-            tuple((str(row.point.fraction_bits), *_speed(precision, row),
-                   *_placement(row.placement), _rate(precision, row)) for row in rows),
-        ),
+        _speeds(precision),
     ]
+
+
+def _speeds(precision: Precision) -> TextTable:
+    title = "speed, and one processing element on an ECP5-85k, speed grade 6"
+    columns = ("fraction bits", "cycles", "frame", "fragments / clock / PE")
+    rows = [(str(row.point.fraction_bits), *_speed(precision, row)) for row in precision.rows]
+    if all(row.placement is None for row in precision.rows):
+        reason = precision.missing_tools or "--place-and-route"
+        return TextTable(title, (*columns, "area and clock"), tuple((*row, reason) for row in rows))
+    return TextTable(
+        title,
+        (*columns, "LUT", "FF", "DSP", "BRAM", "LUT RAM", "MHz", "range", "Mfragments / s / PE"),
+        tuple((*words, *_placement(row.placement), _rate(precision, row))
+              for words, row in zip(rows, precision.rows, strict=True)),
+    )
 
 
 def precision_text(precision: Precision) -> str:
@@ -90,7 +104,7 @@ def precision_table(precision: Precision) -> None:
         console.print(line, highlight=False, soft_wrap=True)
     for table in tables(precision):
         console.print(f"\n{table.title}", highlight=False, soft_wrap=True)
-        console.print(table.rich())
+        table.print()
     console.print()
     for line in remarks(precision):
         console.print(line, highlight=False, soft_wrap=True)
@@ -142,7 +156,7 @@ def _speed(precision: Precision, row: PrecisionRow) -> tuple[str, ...]:
     frame = precision.frame(row)
     if frame is None:
         return NOTHING, "none", NOTHING
-    return (f"{frame.cycles:,}", "simulated" if row.frame is not None else "as nearest",
+    return (f"{frame.cycles:,}", "simulated" if row.frame is not None else "nearest",
             f"{precision.fragments_per_clock(row) or 0:.3f}")
 
 

@@ -35,7 +35,7 @@ from cardcage.testbenches.precision_chart import (
 )
 from cardcage.testbenches.precision_facts import precision_facts
 from cardcage.testbenches.precision_report import PRECISION_FILES, precision_page
-from cardcage.testbenches.precision_table import number, precision_text, tables
+from cardcage.testbenches.precision_table import number, precision_table, precision_text, tables
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import simulate
 
@@ -204,7 +204,8 @@ def test_table(study):
     assert exact[0] == f"{study.machine.fraction_bits} exact" and exact[1:6] == ("0",) * 5
     assert all(len(row) == len(table.columns) for table in tables(study) for row in table.rows)
     assert [row[2] for row in speed.rows].count("simulated") == 3
-    assert "as nearest" in text and text.startswith("good: ")
+    assert {row[4] for row in speed.rows} == {"--place-and-route"}
+    assert "  nearest  " in text and text.startswith("good: ")
     assert all(line == line.rstrip() for line in text.splitlines())
     row = tables(placed(study))[2].rows[0]
     assert row[4:9] == ("120", "7", "0", "0", "0") and row[9] == "90.0"
@@ -212,8 +213,20 @@ def test_table(study):
         "0", "2", "0.12", "5.5", "3,691", "1,000,000"]
 
 
+def test_terminal_tables_lose_nothing(study, monkeypatch, capsys):
+    """However narrow the terminal is."""
+    monkeypatch.setenv("COLUMNS", "60")
+    precision_table(placed(study))
+    shown = capsys.readouterr().out
+    assert "\N{HORIZONTAL ELLIPSIS}" not in shown
+    for table in tables(placed(study)):
+        for row in table.rows:
+            assert re.search(r" +".join(map(re.escape, row)), shown), row
+
+
 def test_without_the_extra(study):
     missing = replace(study, missing_tools="needs pip install 'cardcage[fpga]'")
+    assert {row[4] for row in tables(missing)[2].rows} == {"needs pip install 'cardcage[fpga]'"}
     assert "area and clock: needs pip install 'cardcage[fpga]'" in precision_text(missing)
     assert "needs pip install &#39;cardcage[fpga]&#39;" in precision_page(missing)
 
