@@ -100,7 +100,8 @@ class RenderJob:
         return rendering
 
     def _simulated(self, recording: Path | None, progress: Progress | None) -> Simulation:
-        return simulate_frame(self.options.engine, self.configuration, self.scene.display_list,
+        observed = replace(self.configuration, observe=True)  # costs no clock
+        return simulate_frame(self.options.engine, observed, self.scene.display_list,
                               memory_seed=self.options.random_memory, waveform=recording,
                               progress=progress)
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from ..golden.cards import MEMORY_UNIT, domains
 from ..golden.exact import depth_complexity
+from .activity import ACTIVITY_KINDS
+from .activity_chart import activity_chart, timeline_chart
 from .page import page_environment
 from .rendering import Rendering
 from .report_facts import report_facts
@@ -72,10 +74,17 @@ def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
              data_uri(depth_difference(rendering, reach))),
         ],
         chart=work_chart(rendering.simulation.work),
+        activity_charts=_activity_charts(rendering),
+        activity_kinds=ACTIVITY_KINDS,
         groups=card_groups(rendering.configuration.cards),
         display_list=_display_list_facts(rendering),
         exact=_is_exact(rendering),
     )
+
+
+def _activity_charts(rendering: Rendering) -> list[str]:
+    record = rendering.simulation.activity
+    return [] if record is None else [activity_chart(record), timeline_chart(record)]
 
 
 def card_groups(cards: str) -> list[CardGroup]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from .activity import ACTIVITY_KINDS, ActivityRecord
 from .compare import FirstDifference, PixelValue
 from .rendering import Rendering
 
@@ -45,6 +46,7 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
              "busy": work.busy_cycles}
             for work in simulation.work
         ],
+        "activity": _activity(simulation.activity),
         "engine": simulation.engine,
         "simulated_cycles_per_second": rendering.cycles_per_second,
         "build_seconds": simulation.build_seconds,
@@ -52,6 +54,21 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         "wall_seconds": rendering.wall_seconds,
         "warnings": list(rendering.warnings),
         "first_difference": _first_difference(comparison.first_difference),
+    }
+
+
+def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
+    """Clocks of each kind: of every processing element, and of all of them bucket by bucket."""
+    if record is None:
+        return None
+    timeline = record.counts.sum(axis=1)
+    return {
+        "clocks": record.clocks,
+        "shares": record.shares(),
+        "per_pe": [dict(zip((kind.name for kind in ACTIVITY_KINDS), counts, strict=True))
+                   for counts in record.by_element.tolist()],
+        "bucket_clocks": record.bucket_clocks,
+        "timeline": {kind.name: timeline[:, kind.activity].tolist() for kind in ACTIVITY_KINDS},
     }
 
 

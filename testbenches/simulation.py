@@ -18,6 +18,7 @@ from ..golden.interlace import Interlace
 from ..golden.precision import in_finer_words
 from ..golden.scene_needs import fitted
 from ..golden.setup import prepare
+from .activity import ActivityRecord
 from .engine import Engine, EngineRun, Job, Progress, Scan
 
 
@@ -49,6 +50,7 @@ class Simulation:
     ``draw_cycles``      frame start to the last processing element's done
     ``repeated_scans``   scans that began with the old picture since the frame start
     ``scans``            every whole scan, in order
+    ``activity``         what the processing elements did meanwhile; None where nothing tells
     """
 
     video: NDArray[np.uint8]
@@ -66,6 +68,7 @@ class Simulation:
     seconds: float
     build_seconds: float = 0.0
     notes: tuple[str, ...] = ()
+    activity: ActivityRecord | None = None
 
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
@@ -182,6 +185,7 @@ def _interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulatio
         seconds=run.seconds,
         build_seconds=run.build_seconds,
         notes=run.notes,
+        activity=run.activity[0] if run.activity else None,
     )
 
 

@@ -8,9 +8,13 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from PIL import Image
 
+from cardcage.golden.activity import Activity
 from cardcage.golden.display_list import DisplayList
+from cardcage.testbenches.activity import ACTIVITY_KINDS, activity_record
+from cardcage.testbenches.activity_chart import activity_chart, timeline_chart, timeline_picture
 from cardcage.testbenches.report import REPORT_FILES, card_groups
 from cardcage.testbenches.report_pictures import DIFFERENT_COLOR, color_difference
 from cardcage.testbenches.simulation import Work
@@ -92,6 +96,13 @@ def test_json_keys(folder):
     assert facts["efficiency"] == pytest.approx(facts["fragments"] / cycles["draw"])
     assert set(facts["per_pe"][0]) == {"first_unit", "units", "fragments", "busy"}
     assert facts["per_pe"][0]["busy"] <= cycles["draw"] + 20
+    activity = facts["activity"]
+    assert 0 < activity["clocks"] - cycles["draw"] < 8
+    assert activity["per_pe"][0]["fragment"] == facts["fragments"]
+    assert sum(activity["per_pe"][0].values()) == activity["clocks"]
+    assert {name: sum(counts) for name, counts in activity["timeline"].items()} == (
+        activity["per_pe"][0])
+    assert sum(activity["shares"].values()) == pytest.approx(1)
     assert facts["engine"] == "pysim"
     assert facts["simulated_cycles_per_second"] > 0
     assert facts["wall_seconds"] > 0
@@ -107,7 +118,7 @@ def test_page_is_complete_in_itself(which, request):
     assert len(images) == 6
     assert all(image["src"].startswith("data:image/png;base64,") for image in images)
     assert all(image["alt"] for image in images)
-    assert len(page.of("svg")) == 1
+    assert len(page.of("svg")) == 3
     assert "prefers-color-scheme: dark" in text
 
 
@@ -172,6 +183,34 @@ def test_card_groups():
         (None, [0]), (0, [1, 2]), (1, []), (2, [3])]
     assert [group.caption for group in groups] == [
         "owned by nobody", "owns 1 to 2", "owns none", "owns 3"]
+
+
+@pytest.mark.parametrize("elements", [1, 3, 100])
+def test_activity_charts(elements):
+    samples = [sum(clock % 9 << 4 * element for element in range(elements))
+               for clock in range(1000)]
+    record = activity_record(5, samples, elements)
+    for svg in (activity_chart(record), timeline_chart(record)):
+        Page(svg)
+        assert svg.startswith("<svg") and "http" not in svg
+        assert ("PE 0" in svg) == (elements <= 24)
+
+
+def test_the_timeline_shows_who_did_what_when():
+    """Two elements: one draws first and then waits, the other half and half all the time."""
+    fragment, scan = Activity.FRAGMENT, Activity.SCAN
+    first = [fragment] * 512 + [scan] * 512
+    second = [fragment, scan] * 512
+    samples = [one | other << 4 for one, other in zip(first, second, strict=True)]
+    picture = timeline_picture(activity_record(0, samples, 2))
+    assert picture.shape == (32, 256, 4)
+    draws, waits = (tuple(round(255 * part) for part in to_rgb(kind.color))
+                    for kind in ACTIVITY_KINDS if kind.activity in (fragment, scan))
+    assert {tuple(dot) for dot in picture[2:16, :128, :3].reshape(-1, 3)} == {draws}
+    assert {tuple(dot) for dot in picture[2:16, 128:, :3].reshape(-1, 3)} == {waits}
+    assert {tuple(dot) for dot in picture[24:, :, :3].reshape(-1, 3)} == {draws}
+    assert {tuple(dot) for dot in picture[18:24, :, :3].reshape(-1, 3)} == {waits}
+    assert not picture[[0, 1, 16, 17], :, 3].any()
 
 
 @pytest.mark.parametrize("elements", [1, 3, 100])
