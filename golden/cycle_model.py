@@ -79,7 +79,7 @@ class CyclePrediction:
 
     ``finished``          float64 (n,): clocks from the first triangle taken until the machine is
                           done, were this triangle the last; of those that may cover a pixel
-    ``broadcast_bound``   clocks to send all of them at best
+    ``broadcast_bound``   clocks to set up and send all of them at best
     ``element_bound``     float64 (elements,): clocks in which each processing element alone, all
                           triangles at hand, must walk, and in which it must draw; the greater
     """
@@ -100,7 +100,7 @@ class CyclePrediction:
 
     @property
     def binding(self) -> str:
-        """What sets the bound: ``broadcast`` or ``busiest element``."""
+        """What sets the bound: set-up and ``broadcast``, or the ``busiest element``."""
         element = float(self.element_bound.max(initial=0))
         return "broadcast" if self.broadcast_bound >= element else "busiest element"
 
@@ -108,12 +108,15 @@ class CyclePrediction:
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
                    pipeline: Pipeline = PIPELINE,
                    fifo_depths: Sequence[int] | None = None,
-                   after: DisplayList | None = None) -> list[CyclePrediction]:
+                   after: DisplayList | None = None,
+                   setup_clocks: int = 1) -> list[CyclePrediction]:
     """The clocks for ``display_list``, for each depth of the FIFOs; by default the machine's own.
 
-    ``after`` was drawn before on the same picture: it hides what lies behind.  Precision does
-    not matter to the clocks.
+    ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup_clocks``
+    is what the machine's own set-up takes for a triangle, busy with others before and after.
+    Precision does not matter to the clocks.
     """
+    interval = max(pipeline.broadcast, setup_clocks)
     interlace = configuration.interlace
     triangles = Triangles.of(display_list,
                              Grid.of(display_list, interlace.x_shift, interlace.y_shift))
@@ -121,14 +124,14 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     elements = configuration.processing_elements
     depths = [configuration.fifo_depth] if fifo_depths is None else list(fifo_depths)
     ports = PortClocks(configuration, display_list, triangles, after)
-    broadcast = _Broadcast(elements, depths, pipeline, len(triangles))
+    broadcast = _Broadcast(elements, depths, pipeline, interval, len(triangles))
     bound = np.zeros((2, elements))
     for spans in lattice_spans(triangles, blocks):
         offsets, walk = _walk(blocks, elements, spans, pipeline)
         clocks = ports.of(spans)
         bound += [walk.sum(axis=0), np.bincount(spans.element, clocks, elements)]
         broadcast.follow(spans.begin, _matrices(spans, offsets, walk, clocks, pipeline))
-    return [CyclePrediction(finished, float(pipeline.broadcast * len(triangles)), bound.max(axis=0))
+    return [CyclePrediction(finished, float(interval * len(triangles)), bound.max(axis=0))
             for finished in broadcast.finished]
 
 
@@ -187,12 +190,13 @@ class _Broadcast:
     """Follows a list through the FIFOs, for several depths at once."""
 
     def __init__(self, elements: int, depths: list[int], pipeline: Pipeline,
-                 triangles: int) -> None:
+                 interval: int, triangles: int) -> None:
         self._pipeline = pipeline
+        self._interval = interval
         self._depths = np.array(depths)
         # Every processing element idle for long.
         self._state = np.full((len(depths), 2 + pipeline.spans_ahead, elements), _NEVER)
-        self._sent = np.full(len(depths), -float(pipeline.broadcast))
+        self._sent = np.full(len(depths), -float(interval))
         #: When the last processing element was through with the walk of a triangle.
         self._walked = np.full((len(depths), triangles), _NEVER)
         self.finished = np.zeros((len(depths), triangles))
@@ -204,7 +208,7 @@ class _Broadcast:
         for number, matrix in enumerate(matrices, begin):
             place = number - self._depths
             room = np.where(place >= 0, self._walked[lines, place] + pipeline.fifo_room, 0)
-            sent = np.maximum(sent + pipeline.broadcast, room)
+            sent = np.maximum(sent + self._interval, room)
             np.maximum(state[:, 0], (sent + pipeline.fifo)[:, np.newaxis], out=state[:, 0])
             state = (matrix + state[:, :, np.newaxis]).max(axis=1)
             last = state[:, :2].max(axis=2)

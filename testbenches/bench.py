@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..golden.cycle_model import predict_cycles
+from ..hdl.triangle_setup import TriangleSetup
 from .bench_cases import CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
 from .bench_run import Measurement, measure
@@ -78,8 +79,12 @@ def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
 
 
 def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
-    [once] = predict_cycles(machine.configuration, case.once)
-    [twice] = predict_cycles(machine.configuration, case.twice, after=case.once)
+    configuration = machine.configuration
+    setup_clocks = 1
+    if configuration.setup == "hardware":
+        setup_clocks = TriangleSetup(configuration=configuration).interval
+    [once] = predict_cycles(configuration, case.once, setup_clocks=setup_clocks)
+    [twice] = predict_cycles(configuration, case.twice, after=case.once, setup_clocks=setup_clocks)
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
                     predicted=twice.cycles - once.cycles, bound=twice.bound / 2,
                     binding=twice.binding)

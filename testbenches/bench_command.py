@@ -14,10 +14,11 @@ from .atomic_output import atomic_file, output_errors
 from .bench import bench, steps
 from .bench_baseline import against, load_baseline
 from .bench_cases import DEFAULT_CASES, ORDERS, case_names, check_case
-from .bench_machines import ALL_MACHINES, SETUPS, MachineAxes, bench_machines
+from .bench_machines import ALL_MACHINES, MachineAxes, bench_machines
 from .bench_table import bench_facts, bench_table, bench_text
 from .command_group import EXIT_DIFFERENT
 from .engines import ENGINES, make_engine
+from .machine_options import SETUPS
 from .progress import step_bar
 
 #: Of ``--engine``: ask the cycle model only.

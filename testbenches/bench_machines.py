@@ -5,21 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import product
-from typing import Any
 
-from ..golden.configuration import MAXIMUM_SETUP_INTERVAL, MachineConfiguration
+from ..golden.configuration import MachineConfiguration
 from ..golden.errors import InputError
 from ..golden.plan import full_machine
 from .bench_cases import DEPTH_BITS, SIZE, SUB_BITS
+from .machine_options import SETUPS
 
 CLOCKS_PER_PIXEL = 4
-
-#: Who computes the increments of a triangle, and how fast.
-SETUPS: dict[str, dict[str, Any]] = {
-    "host": {"setup": "host"},
-    "small": {"setup": "hardware", "setup_interval": MAXIMUM_SETUP_INTERVAL},
-    "fast": {"setup": "hardware", "setup_interval": 1},
-}
 
 _CHOICES = {field.name: field.default for field in fields(MachineConfiguration)}
 
@@ -34,7 +27,7 @@ class MachineAxes:
     ``elements``  processing elements
     ``units``     memory units of each
     ``ports``     of each memory unit
-    ``setups``    keys of ``SETUPS``
+    ``setups``    keys of ``machine_options.SETUPS``
     ``blocks``    pixels a side that neighbour in one processing element; 1 is the interlace of 1979
     ``fifos``     triangles that a processing element can hold in waiting
     """
@@ -50,7 +43,7 @@ class MachineAxes:
 #: Of ``cardcage bench --all``.
 ALL_MACHINES = MachineAxes(
     elements=(1, 4, 16), units=(1, 2), ports=(1, 2) if BEST_PORTS == 2 else (1,),
-    setups=tuple(SETUPS) if "setup" in _CHOICES else ("host",),
+    setups=tuple(SETUPS),
     blocks=(1, 8) if "block" in _CHOICES else (1,))
 
 
@@ -86,16 +79,13 @@ def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
 
 def _machine(elements: int, units: int, ports: int, setup: str, block: int,
              fifo: int) -> BenchMachine:
-    if setup not in SETUPS:
-        raise InputError(f"--setup: {setup!r} is none of {', '.join(SETUPS)}")
-    chosen = {"memory_ports": ports, "block": block, **SETUPS[setup]}
-    plain = {"memory_ports": 1, "block": 1, "setup": "host", "setup_interval": 1}
+    chosen = {"memory_ports": ports, "block": block}
     for name, value in chosen.items():
-        if name not in _CHOICES and value != plain[name]:
+        if name not in _CHOICES and value != 1:
             raise InputError(f"{name}: this release builds no machine with {value}")
     configuration = full_machine(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        **{name: value for name, value in chosen.items() if name in _CHOICES})
+        **SETUPS[setup], **{name: value for name, value in chosen.items() if name in _CHOICES})
     return BenchMachine(elements, units, ports, setup, block, fifo, configuration)
