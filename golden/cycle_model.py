@@ -207,7 +207,8 @@ class _Broadcast:
         lines = np.arange(len(self._depths))
         for number, matrix in enumerate(matrices, begin):
             place = number - self._depths
-            room = np.where(place >= 0, self._walked[lines, place] + pipeline.fifo_room, 0)
+            room = np.where(place >= 0, self._walked[lines, np.maximum(place, 0)]
+                            + pipeline.fifo_room, 0)
             sent = np.maximum(sent + self._interval, room)
             np.maximum(state[:, 0], (sent + pipeline.fifo)[:, np.newaxis], out=state[:, 0])
             state = (matrix + state[:, :, np.newaxis]).max(axis=1)

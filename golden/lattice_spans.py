@@ -51,7 +51,7 @@ class LatticeSpans:
     ``row``       row of the picture
     ``length``    pixels
     ``source``    index of the whole span in ``whole``, the covered columns it is cut from
-    ``x_offset`` ``x_bits``  of the block
+    ``x_offset`` ``x_bits`` ``y_bits``  of the block
     ``rows``      int64 (end - begin, blocks): lattice rows of each triangle in each block
     """
 
@@ -66,6 +66,7 @@ class LatticeSpans:
     source: Int64
     x_offset: Int64
     x_bits: Int64
+    y_bits: Int64
     whole: Spans
     rows: Int64
 
@@ -133,7 +134,7 @@ def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
                                                                    triangle))
     row = whole.row[source]
     facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
-             for name in ("element", "place", "x_offset", "x_bits")}
+             for name in ("element", "place", "x_offset", "x_bits", "y_bits")}
     return LatticeSpans(
         begin=begin, end=end, triangle=triangle, row=row, length=length, source=source,
         step=-((y_offset[number] - row) >> y_bits[number]) - above[triangle, number],

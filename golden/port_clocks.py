@@ -61,15 +61,22 @@ class PortClocks:
         else:
             stalls = WRITE_LATENCY * ((spans.length - 1) // WRITE_LATENCY)
             clocks += np.where(in_turn, 0, stalls * written / spans.length)
-        return clocks * self._scan_factor()
+        return clocks * self._scan_factor(spans)
 
-    def _scan_factor(self) -> float:
-        """How much longer it takes at a port that the scan uses too, while it shows the picture."""
-        interlace = self._configuration.interlace
+    def _scan_factor(self, spans: LatticeSpans) -> Float64:
+        """How much longer it takes at a port that the scan uses too, blanking included.
+
+        A unit has slots in the lines that it has pixels of.  In those a processing element is
+        slower in its rows on that unit, in the others not at all.
+        """
+        interlace, timing = self._configuration.interlace, self._configuration.timing
         group = interlace.x_unit_bits + interlace.x_shift
-        slots = 1 / (self._configuration.clocks_per_pixel << group)
-        lines = 1 / (1 << interlace.y_unit_bits)  # those that the unit has pixels of
-        return lines / (1 - slots) + 1 - lines
+        shown = timing.horizontal_active * timing.vertical_active / timing.pixels
+        slots = shown / (self._configuration.clocks_per_pixel << group)
+        lines = 1 << interlace.y_unit_bits
+        own = 1 << (interlace.y_unit_bits - spans.y_bits)
+        slower = (1 / (1 - slots) + own - 1) / own
+        return np.asarray(lines / (own / slower + lines - own))
 
     def _written(self, spans: LatticeSpans) -> Int64:
         """int64 (n,): visible fragments of each span, as the pixels are drawn one after another."""

@@ -1,0 +1,185 @@
+"""The ruler: what it measures, what the model says of it, and that wrong pictures have no speed."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from cardcage.golden.configuration import configure
+from cardcage.golden.cycle_model import predict_cycles
+from cardcage.golden.display_list import DisplayList
+from cardcage.golden.exact import depth_complexity, draw
+from cardcage.testbenches.bench_cases import (
+    DEFAULT_CASES,
+    LEAST_TRIANGLES,
+    MESH,
+    ORDERS,
+    CaseLists,
+    case_lists,
+    case_names,
+    peers,
+)
+from cardcage.testbenches.bench_run import DifferentError, measure
+from cardcage.testbenches.cli import main
+from cardcage.testbenches.command_group import EXIT_DIFFERENT
+from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.verilator_engine import VerilatorEngine
+from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
+
+SMALL = 20
+
+
+def small_case(seed: int, triangles: int) -> CaseLists:
+    """Random triangles on a small screen, each before the one before."""
+    random = np.random.default_rng(seed)
+    print(f"seed {seed}")
+
+    def some(count: int, begin: int) -> DisplayList:
+        depth = 100_000 - 100 * (begin + np.arange(count)[:, np.newaxis]) + random.integers(
+            0, 99, (count, 3))
+        corner = random.integers(0, SMALL - 8, (count, 1, 2)) + random.integers(0, 9, (count, 3, 2))
+        color = random.integers(1, 256, (count, 1, 3), np.uint8).repeat(3, axis=1)
+        return DisplayList(SMALL, SMALL, (256 * corner + 128).astype(np.int32), depth, color)
+
+    return CaseLists(f"random {seed}", "visible", some(triangles, 0), some(2 * triangles,
+                                                                           triangles))
+
+
+@pytest.mark.parametrize("name", [name for name in case_names() if name != MESH])
+@pytest.mark.parametrize("order", ORDERS)
+def test_cases(name, order):
+    lists = case_lists(name, order)
+    n = lists.once.triangles
+    assert n >= LEAST_TRIANGLES and lists.twice.triangles == 2 * n
+    assert lists.frame.triangles == 3 * n and lists.frame.flat
+    assert len({tuple(triangle) for triangle in lists.frame.depth.tolist()}) == 3 * n
+    depth = lists.frame.depth
+    assert (np.ptp(depth, axis=1) > 1000).all(), "sloped"
+    if order == "visible":
+        assert (depth[1:].max(axis=1) < depth[:-1].min(axis=1)).all()
+    else:
+        assert (depth[1:].max(axis=1) > depth[:-1].min(axis=1)).any()
+
+
+def test_fragments_are_those_that_the_peers_drew():
+    """By the top-left rule, from the same page as their figures."""
+    for name, fragments in (("one_pixel", 1), ("right_TL_8", 36), ("right_TL_32", 528),
+                            ("right_TL_128", 8256), ("random_bbox16", 23.5),
+                            ("sliver_vert_2x480", 720), ("sliver_diag_480", 718)):
+        once = case_lists(name).once
+        assert depth_complexity(once).sum() / once.triangles == pytest.approx(fragments, abs=0.06)
+    by_name = {peer.short: peer for peer in peers()}
+    assert by_name["RasterIX"].cycles_per_triangle["one_pixel"] == 12
+    assert by_name["natanbc"].depth_error_lsb == [240, 702]
+
+
+def test_the_mesh_lies_in_three_layers():
+    lists = case_lists(MESH)
+    assert 50_000 <= lists.once.triangles <= 70_000
+    assert lists.twice.depth.max() < lists.once.depth.min()
+
+
+@pytest.mark.parametrize("cards", ["PM", "PMPM"])
+def test_measured_and_predicted(cards):
+    cases = [small_case(1, 20), small_case(2, 35)]
+    configuration = replace(configure(cases[1].frame, cards=cards), observe=True, fraction_bits=40)
+    measurements = measure(configuration, cases, PysimEngine())
+    for case, measured in zip(cases, measurements, strict=True):
+        assert measured.fragments == depth_complexity(case.once).sum()
+        assert sum(measured.element_fragments) == depth_complexity(case.twice).sum()
+        assert measured.activity.clocks == measured.cycles_twice
+        np.testing.assert_array_equal(measured.activity.by_element[:, 0],
+                                      measured.element_fragments)
+        assert measured.activity.shares()["service"] < 0.01
+        assert measured.cycles_once == measured.sustained_cycles + measured.latency
+        for cycles, listed in ((measured.cycles_once, case.once),
+                               (measured.cycles_twice, case.twice)):
+            [predicted] = predict_cycles(configuration, listed)
+            assert predicted.cycles == pytest.approx(cycles, rel=0.05, abs=15)
+            assert predicted.bound <= cycles * 1.05
+
+
+class Tampering:
+    """Another engine's run with one pixel of its last scan wrong."""
+
+    name = "tampering"
+
+    def run(self, job, progress=None):
+        run = PysimEngine().run(job, progress)
+        *scans, last = run.scans
+        picture = last.picture.copy()
+        picture[3, 4] ^= 1
+        return replace(run, scans=[*scans, replace(last, picture=picture)])
+
+
+def test_a_wrong_picture_has_no_speed():
+    case = small_case(3, 4)
+    configuration = configure(case.frame, cards="PM")
+    with pytest.raises(DifferentError, match=r"random 3.* on PM: 1 colours and 0 depths differ"):
+        measure(configuration, [case], Tampering())
+    assert (draw(case.frame).winner >= 0).any()
+
+
+def bench(*arguments, status=0):
+    result = CliRunner().invoke(main, ["bench", *map(str, arguments)])
+    assert result.exit_code == status, result.output
+    return result
+
+
+def test_the_model_alone(tmp_path):
+    result = bench("one_pixel", "right_TL_32", "--engine", "model", "--elements", "1,64", "--fifo",
+                   "2,16", "--json", tmp_path / "b.json", "--plot", tmp_path / "b.png")
+    assert re.search(r"64x\(PMM\).*FIFO of 2", result.output)
+    rows = json.loads((tmp_path / "b.json").read_text())["rows"]
+    assert len(rows) == 8 and all(row["predicted_cycles"] > 0 for row in rows)
+    assert "cycles" not in rows[0] and rows[0]["peers"]["pico-gs"] == 160
+    with Image.open(tmp_path / "b.png") as picture:
+        assert picture.size[0] > 500
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    (["sliver"], "there is no 'sliver'; take sliver_"),
+    (["one_pixel", "--against", "nowhere.json"], "no such file; write one with --json"),
+    (["one_pixel", "--against", __file__], "not a file that cardcage bench --json wrote"),
+    (["one_pixel", "--elements", "3"], "power of two"),
+    (["one_pixel", "--elements", "x"], "not a valid integer"),
+    (["one_pixel", "--plot", "p.png", "--elements", "1", "--engine", "model"], "nothing to draw"),
+])
+def test_wrong_input(arguments, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = bench(*arguments, status=2)
+    assert message in result.stderr and result.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_peer_cases_within_two_percent_and_against_a_baseline(tmp_path, monkeypatch):
+    """On the compiled machine: the four cases of the default, and what a slower commit shows."""
+    try:
+        find_verilator()
+    except ToolMissingError as missing:
+        pytest.skip(f"simulator verilator: {missing}")
+    monkeypatch.setattr("cardcage.testbenches.engines.ENGINES", {"verilator": VerilatorEngine})
+    file = tmp_path / "now.json"
+    machine = ["--elements", "2", "--units", "1"]
+    result = bench(*DEFAULT_CASES, *machine, "--json", file)
+    assert "where the processing elements' clocks went" in result.output
+    facts = json.loads(file.read_text())
+    assert len(facts["rows"]) == len(DEFAULT_CASES)
+    for row in facts["rows"]:
+        print(row["case"], row["cycles"], row["prediction_error"])
+        assert abs(row["prediction_error"]) < 0.02, row["case"]
+        assert row["cycles"]["sustained"] >= 0.98 * row["bound"]["cycles"]
+        assert sum(row["clocks_of_elements"].values()) == pytest.approx(1)
+
+    again = bench("one_pixel", *machine, "--against", file)
+    assert "0 slower, 0 faster, 1 the same" in again.output
+    facts["rows"][0]["cycles"]["sustained"] -= 1
+    file.write_text(json.dumps(facts))
+    slower = bench("one_pixel", *machine, "--against", file, status=EXIT_DIFFERENT)
+    assert "1 slower" in slower.output and "slower  2x(PM)" in slower.output
