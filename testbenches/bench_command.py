@@ -10,11 +10,12 @@ from typing import Any
 
 import click
 
+from ..golden.errors import InputError
 from .atomic_output import atomic_file, output_errors
 from .bench import bench, steps
 from .bench_baseline import against, load_baseline
 from .bench_cases import DEFAULT_CASES, ORDERS, case_names, check_case
-from .bench_machines import ALL_MACHINES, MachineAxes, bench_machines
+from .bench_machines import ALL_MACHINES, MachineAxes, bench_machines, varied
 from .bench_table import bench_facts, bench_table, bench_text
 from .command_group import EXIT_DIFFERENT
 from .engines import ENGINES, make_engine
@@ -65,7 +66,7 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--against", "baseline", type=click.Path(path_type=Path), metavar="FILE",
               help="Compare with the figures that --json wrote earlier.")
 @click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png",
-              help="Also draw the cycles against the depth of the FIFOs, or the blocks.")
+              help="Also draw the speed along --fifo, --block or --elements.")
 @click.pass_obj
 def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, ...],
                   everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
@@ -91,6 +92,9 @@ def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, 
     chosen = {name: values for name, values in axes.items() if values is not None}
     standard = vars(ALL_MACHINES) if everything else {}
     machines = bench_machines(MachineAxes(**standard | chosen))
+    if plot is not None and not varied(machines):
+        raise InputError("--plot: nothing to draw along; give --fifo, --block or --elements "
+                         "several numbers")
     names = [check_case(case) for case in cases] or list(
         case_names() if everything else DEFAULT_CASES)
     if everything:

@@ -77,6 +77,12 @@ def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
         axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, axes.fifos)]
 
 
+def varied(machines: Sequence[BenchMachine]) -> list[str]:
+    """The numbers in which they differ, first what a plot is drawn along."""
+    return [name for name in ("fifo", "block", "elements")
+            if len({getattr(machine, name) for machine in machines}) > 1]
+
+
 def _machine(elements: int, units: int, ports: int, setup: str, block: int,
              fifo: int) -> BenchMachine:
     chosen = {"memory_ports": ports, "block": block}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
@@ -18,8 +18,8 @@ TITLES: dict[Order, str] = {
     "random": "random order of depths",
 }
 
-_COLUMNS = ("case", "triangles", "clocks a triangle", "model", "of bound", "clocks a fragment",
-            "fragments a clock", "busy", "latency")
+_COLUMNS = ("case", "triangles", "clocks a triangle", "of bound", "bound by")
+_MEASURED_COLUMNS = ("model", "clocks a fragment", "fragments a clock", "busy", "latency")
 
 
 def bench_text(rows: Sequence[BenchRow]) -> str:
@@ -29,7 +29,7 @@ def bench_text(rows: Sequence[BenchRow]) -> str:
         widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
         lines += [title, *("  ".join(
             [row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells), ""]
-    return "\n".join([*lines, *_notes()])
+    return "\n".join([*lines, *_notes(rows)])
 
 
 def bench_table(rows: Sequence[BenchRow]) -> None:
@@ -44,7 +44,7 @@ def bench_table(rows: Sequence[BenchRow]) -> None:
             table.add_row(*row)
         console.print(table)
         console.print()
-    for line in _notes():
+    for line in _notes(rows):
         console.print(line, highlight=False, soft_wrap=True)
 
 
@@ -56,7 +56,7 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     tables = []
     for name, group in groupby(rows, title):
         some = list(group)
-        tables.append((name, [_header(), *map(_cells, some)]))
+        tables.append((name, [_header(some[0].measured is not None), *map(_cells, some)]))
         observed = [(row.case, row.measured.activity.shares()) for row in some
                     if row.measured is not None and row.measured.activity is not None]
         if observed:
@@ -67,43 +67,40 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     return tables
 
 
-def _header() -> tuple[str, ...]:
-    return (*_COLUMNS, *(peer.short for peer in peers()))
+def _header(measured: bool) -> tuple[str, ...]:
+    return (*_COLUMNS, *(_MEASURED_COLUMNS if measured else ()), *(peer.short for peer in peers()))
 
 
 def _cells(row: BenchRow) -> tuple[str, ...]:
-    measured = row.measured
-    error = row.prediction_error
-
-    def figure(value: Callable[[Any], float], form: str) -> str:
-        return "" if measured is None else format(value(measured), form)
-
-    return (
-        row.case,
-        f"{row.triangles:,}",
-        f"{row.cycles / row.triangles:,.2f}",
-        "model" if error is None else f"{100 * error:+.1f} %",
-        f"{100 * row.bound / row.cycles:.0f} %",
-        figure(lambda it: it.cycles_per_fragment, ".3f"),
-        figure(lambda it: it.fragments_per_clock, ".2f"),
-        figure(lambda it: 100 * it.utilisation, ".0f") + " %" * (measured is not None),
-        figure(lambda it: it.latency, ","),
-        *(f"{figures[row.case]:,}" if row.case in figures else ""
-          for figures in (peer.cycles_per_triangle for peer in peers())),
-    )
+    cells = [row.case, f"{row.triangles:,}", f"{row.cycles / row.triangles:,.2f}",
+             f"{100 * row.bound / row.cycles:.0f} %", row.binding]
+    if (measured := row.measured) is not None:
+        cells += [
+            f"{100 * row.prediction_error:+.1f} %",
+            f"{measured.cycles_per_fragment:.3f}",
+            f"{measured.fragments_per_clock:.2f}",
+            f"{100 * measured.utilisation:.0f} %",
+            f"{measured.latency:,}",
+        ]
+    figures = [peer.cycles_per_triangle.get(row.case) for peer in peers()]
+    return (*cells, *("" if figure is None else f"{figure:,}" for figure in figures))
 
 
-def _notes() -> list[str]:
+def _notes(rows: Sequence[BenchRow]) -> list[str]:
     without_setup = [peer.short for peer in peers() if "hardware" not in peer.setup]
     without_depth = [peer.short for peer in peers() if not peer.depth_tested]
-    return [
+    of_bound = "Of bound: how near to what set-up and broadcast and the busiest element allow."
+    said = [
+        "Nothing was simulated: clocks are the cycle model's, (T(2n) - T(n)) / n of n triangles.  "
+        + of_bound,
+    ] if all(row.measured is None for row in rows) else [
         "Every picture was compared with the golden one.  Clocks: (T(2n) - T(n)) / n of n "
         "triangles; latency: T(n) less n of these.",
-        "Model: how far the cycle model is off.  Of bound: how near to what broadcast and busiest "
-        "processing element allow.  Busy: fragments per clock and processing element.",
-        "Peers on the right, in clocks a triangle: without set-up "
-        f"{' and '.join(without_setup)}, without a depth test {' and '.join(without_depth)}.",
+        f"{of_bound}  Model: how far the cycle model is off.  Busy: fragments per clock and "
+        "processing element.",
     ]
+    return [*said, "Peers on the right, in clocks a triangle: without set-up "
+            f"{' and '.join(without_setup)}, without a depth test {' and '.join(without_depth)}."]
 
 
 def bench_facts(rows: Sequence[BenchRow]) -> list[dict[str, Any]]:
@@ -124,7 +121,8 @@ def _facts(row: BenchRow) -> dict[str, Any]:
         "order": row.order,
         "triangles": row.triangles,
         "predicted_cycles": row.predicted,
-        "bound": {"cycles": row.bound, "binding": row.binding},
+        "bound": {"cycles": row.bound, "binding": row.binding,
+                  "share": row.bound / row.cycles},
         "peers": {peer.name: peer.cycles_per_triangle[row.case] for peer in peers()
                   if row.case in peer.cycles_per_triangle},
     }
