@@ -8,6 +8,8 @@ from ..golden.configuration import MachineConfiguration
 from .central_broadcast_controller import CentralBroadcastController
 from .clear import Clear
 from .depth_test import DepthTest
+from .divider import Divider
+from .edge_setup import EdgeSetup
 from .edge_walker import EdgeWalker
 from .fragment_stepper import FragmentStepper
 from .id_increment import IdIncrement
@@ -15,16 +17,30 @@ from .interlace import LatticeBlock, PixelAddress, ScanAddress
 from .line_selector import LineSelector
 from .memory_unit import MemoryUnit
 from .one_port_memory import OnePortMemory
+from .pipelined_multiplier import PipelinedMultiplier
+from .pixel_box import PixelBox
+from .plane_setup import PlaneSetup, plane_division
 from .processing_element import ProcessingElement
 from .processing_element_control import ProcessingElementControl
 from .read_back import ReadBack
 from .response_link import ResponseLink
+from .result_queue import ResultQueue
+from .sampling_grid import SamplingGrid
 from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
+from .triangle_outline import TriangleOutline
+from .triangle_setup import TriangleSetup
+from .vertex_sort import VertexSort
 from .video_scan_generator import VideoScanGenerator
 
 __all__ = ["COMPONENTS"]
+
+
+def _depth(configuration: MachineConfiguration) -> dict[str, int]:
+    """The interpolant that every machine has."""
+    return {"value_bits": configuration.depth_bits, "word_bits": configuration.depth_plane_bits}
+
 
 #: Makes a component as a machine of that configuration has it; the four boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
@@ -34,6 +50,8 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
     "clear": lambda c: Clear(configuration=c),
     "depth_test": lambda c: DepthTest(configuration=c),
+    "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
+    "edge_setup": lambda c: EdgeSetup(configuration=c),
     "edge_walker": lambda c: EdgeWalker(configuration=c),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
@@ -41,12 +59,22 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     # The processing element has four users of its lines.
     "line_selector": lambda c: LineSelector(configuration=c, sources=4),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits),
+    # That of a triangle's area.
+    "pipelined_multiplier": lambda c: PipelinedMultiplier(
+        a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
     "pixel_address": lambda c: PixelAddress(configuration=c),
+    "pixel_box": lambda c: PixelBox(configuration=c),
+    "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
     "processing_element_control": lambda c: ProcessingElementControl(configuration=c),
     "read_back": lambda c: ReadBack(configuration=c),
     "response_link": lambda c: ResponseLink(),
+    "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
+    "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_start": lambda c: SpanStart(configuration=c),
     "span_walker": lambda c: SpanWalker(configuration=c),
     "survey": lambda c: Survey(configuration=c),
+    "triangle_outline": lambda c: TriangleOutline(configuration=c),
+    "triangle_setup": lambda c: TriangleSetup(configuration=c),
+    "vertex_sort": lambda c: VertexSort(configuration=c),
 }

@@ -42,7 +42,9 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
     """
     top = name or "machine"
     modules = _modules(verilog)
-    timed = _TIMED if name is None else (name,)
+    timed = (name,) if name else _TIMED
+    if name is None and configuration.setup == "hardware":
+        timed += ("triangle_setup",)
     return {
         "version": version("cardcage"),
         "top": top,

@@ -35,11 +35,13 @@ class Divider(wiring.Component):
     start: In(1)
         Divide what is at the inputs.
     dividend: In(signed(dividend_bits))
+        What is divided, without its fraction bits, which are zeros.
     divisor: In(divisor_bits)
         Not 0; for 0 the quotient means nothing.
     done: Out(1)
         High for one clock with each quotient.
     quotient: Out(quotient_bits)
+        Rounded down.
     """
 
     def __init__(self, *, dividend_bits: int, divisor_bits: int, quotient_bits: int,
@@ -50,10 +52,10 @@ class Divider(wiring.Component):
                                    ("fraction_bits", fraction_bits, 0), ("interval", interval, 1)):
             if value < least:
                 raise ValueError(f"{name} must be at least {least}, not {value}")
-        self._dividend_bits = dividend_bits
-        self._divisor_bits = divisor_bits
-        self._quotient_bits = quotient_bits
-        self._fraction_bits = fraction_bits
+        self.dividend_bits = dividend_bits
+        self.divisor_bits = divisor_bits
+        self.quotient_bits = quotient_bits
+        self.fraction_bits = fraction_bits
         steps = max(dividend_bits + fraction_bits, quotient_bits)
         self._stages = -(-steps // interval)
         # Stages of equal length: what are steps too many, less than one a stage, repeat the sign.
@@ -83,19 +85,19 @@ class Divider(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         steps = self.latency
-        pad = steps - self._fraction_bits - self._dividend_bits
+        pad = steps - self.fraction_bits - self.dividend_bits
 
         def digits_left(step):
             """Digits of the dividend, fraction excluded, that are not used up after ``step``."""
-            return max(0, steps - self._fraction_bits - step)
+            return max(0, steps - self.fraction_bits - step)
 
         def quotient_so_far(step):
             """Bits of the word that are known after ``step``."""
-            return max(0, self._quotient_bits - (steps - step))
+            return max(0, self.quotient_bits - (steps - step))
 
         sign = self.dividend[-1]
         loaded = self.start
-        remainder = sign.replicate(self._divisor_bits + 1)
+        remainder = sign.replicate(self.divisor_bits + 1)
         dividend = Cat(self.dividend, sign.replicate(pad))
         divisor, quotient = self.divisor, Const(0, 0)
         for stage in range(self._stages):
@@ -104,10 +106,10 @@ class Divider(wiring.Component):
             def register(width, what, stage=stage):
                 return Signal(width, name=f"{what}_{stage}", reset_less=True)
 
-            next_remainder = register(self._divisor_bits + 1, "remainder")
+            next_remainder = register(self.divisor_bits + 1, "remainder")
             next_dividend = register(digits_left(first + 1), "dividend")
             next_quotient = register(quotient_so_far(beyond - 1), "quotient")
-            next_divisor = register(self._divisor_bits, "divisor")
+            next_divisor = register(self.divisor_bits, "divisor")
             if self._interval > 1:  # without a new one, on with what the stage has
                 remainder = Mux(loaded, remainder, next_remainder)
                 dividend = Mux(loaded, dividend, next_dividend << 1)[:digits_left(first)]

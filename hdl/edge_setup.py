@@ -46,6 +46,7 @@ class EdgeSetup(wiring.Component):
     start_done, step_done: Out(1)
         High for one clock with each result.
     start_result, step_result: Out(edge_word_bits)
+        As ``golden.setup.carry_edges`` gives them.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -28,6 +28,7 @@ _COMMON = {
     "end": "first memory unit after the domain",
     "first": "first memory unit of the domain",
     "fragments": "fragments tested since the frame start",
+    "grid": "the machine's own resolution",
     "left": "from or to the left",
     "lines": "to the memory units",
     "memory": "to the memory units of the domain",
@@ -75,12 +76,15 @@ def described_ports(component: wiring.Component) -> list[dict]:
 
 
 def stated_timing(component: wiring.Component) -> dict:
-    """The clocks of ``latency``, where a component has such a figure, and what it says of time."""
+    """The clocks of ``latency`` and of ``interval``, where a component has such figures, and what
+    it says of time."""
     paragraphs = (inspect.getdoc(type(component)) or "").split("\n\n")
     stated = [_plain(text) for text in paragraphs if text.startswith("Latency")]
     if not stated and any("Combinational." in text for text in paragraphs):
         stated = ["Combinational."]
-    return {"latency_clocks": getattr(component, "latency", None), "stated": " ".join(stated)}
+    intervals = {"interval_clocks": component.interval} if hasattr(component, "interval") else {}
+    return {"latency_clocks": getattr(component, "latency", None), **intervals,
+            "stated": " ".join(stated)}
 
 
 def _meaning(component: wiring.Component, path: tuple) -> str:

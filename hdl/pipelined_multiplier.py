@@ -36,15 +36,16 @@ class PipelinedMultiplier(wiring.Component):
     a: In(signed(a_bits)), b: In(signed(b_bits))
         Arrays of ``pairs`` factors.
     sum: Out(signed(sum_bits))
+        Of the products.
     """
 
     def __init__(self, *, a_bits: int, b_bits: int, pairs: int = 1):
         for name, value in (("a_bits", a_bits), ("b_bits", b_bits), ("pairs", pairs)):
             if value < 1:
                 raise ValueError(f"{name} must be positive, not {value}")
-        self._a_bits = a_bits
-        self._b_bits = b_bits
-        self._pairs = pairs
+        self.a_bits = a_bits
+        self.b_bits = b_bits
+        self.pairs = pairs
         super().__init__({
             "a": In(signed(a_bits)).array(pairs),
             "b": In(signed(b_bits)).array(pairs),
@@ -54,12 +55,12 @@ class PipelinedMultiplier(wiring.Component):
     @property
     def sum_bits(self) -> int:
         """Enough for every sum."""
-        return self._a_bits + self._b_bits + (self._pairs - 1).bit_length()
+        return self.a_bits + self.b_bits + (self.pairs - 1).bit_length()
 
     @property
     def multipliers(self) -> int:
         """Multiplier blocks it takes."""
-        return self._pairs * _limbs(self._a_bits) * _limbs(self._b_bits)
+        return self.pairs * _limbs(self.a_bits) * _limbs(self.b_bits)
 
     @property
     def latency(self) -> int:
@@ -69,7 +70,7 @@ class PipelinedMultiplier(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         addends = []
-        for pair in range(self._pairs):
+        for pair in range(self.pairs):
             a, b = (self._cut(m, factors[pair], f"{name}_{pair}")
                     for name, factors in (("a", self.a), ("b", self.b)))
             for i, (a_limb, a_offset) in enumerate(a):

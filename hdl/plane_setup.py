@@ -10,7 +10,7 @@ from .divider import Divider
 from .pipelined_multiplier import PipelinedMultiplier
 from .sampling_grid import grid_layout
 
-__all__ = ["PlaneSetup", "Slot"]
+__all__ = ["PlaneSetup", "Slot", "plane_division"]
 
 
 class Slot:
@@ -18,6 +18,27 @@ class Slot:
 
     STEP_X, STEP_Y, START = range(3)
     COUNT = 3
+
+
+def slope_bits(configuration: MachineConfiguration, value_bits: int) -> int:
+    """Of a signed slope: at most the rectangle's around the triangle in x (or y) and value."""
+    return value_bits + configuration.coordinate_bits + 1
+
+
+def plane_division(configuration: MachineConfiguration, *, value_bits: int,
+                   word_bits: int) -> dict[str, int]:
+    """The parameters of an interpolant's ``Divider``."""
+    area_bits = 2 * configuration.coordinate_bits
+    shift = max(interlace.y_shift for interlace in configuration.interlaces())
+    return {
+        # The sum of three products, each below 2**(area and value), doubled; or a slope.
+        "dividend_bits": max(area_bits + value_bits + 4, slope_bits(configuration, value_bits) + 1
+                             + configuration.sub_bits + shift),
+        "divisor_bits": area_bits,
+        "fraction_bits": configuration.fraction_bits,
+        "quotient_bits": word_bits + 1,
+        "interval": configuration.setup_interval,
+    }
 
 
 class PlaneSetup(wiring.Component):
@@ -51,8 +72,10 @@ class PlaneSetup(wiring.Component):
         Prepare what is at the inputs, and stays there while the triangle's slots last.
     slot: In(2)
         One of ``Slot``, in turn.
-    upper: In(value_bits), first, second: In(signed(value_bits + 1))
-        The upper vertex's value, the rises from there to the two others.
+    upper: In(value_bits)
+        The upper vertex's value.
+    first, second: In(signed(value_bits + 1))
+        The rises from there to the two others, clockwise.
     factor_1, factor_2: In(signed(coordinate_bits + 1))
         What the rises are multiplied with in this slot.
     offset: In(signed(coordinate_bits + 1))
@@ -62,26 +85,21 @@ class PlaneSetup(wiring.Component):
     done: Out(1)
         High for one clock with each result.
     result: Out(word_bits)
+        As ``golden.setup.Planes`` has it.
     """
 
     def __init__(self, *, configuration: MachineConfiguration, value_bits: int, word_bits: int):
         self.configuration = c = configuration
-        self._value_bits = value_bits
+        self.value_bits = value_bits
+        self.word_bits = word_bits
         grid = grid_layout(c)
-        self._difference_bits = difference = c.coordinate_bits + 1
+        difference = c.coordinate_bits + 1
         self._area_bits = 2 * c.coordinate_bits
-        # At most the rectangle's around the triangle in x (or y) and value.
-        self._slope_bits = value_bits + c.coordinate_bits + 1
+        self._slope_bits = slope_bits(c, value_bits)
         self._slope = PipelinedMultiplier(a_bits=value_bits + 1, b_bits=difference, pairs=2)
         self._product = PipelinedMultiplier(a_bits=max(self._slope_bits, self._area_bits + 1),
                                             b_bits=max(difference, value_bits + 1))
-        most_shifted = c.sub_bits + max(interlace.y_shift for interlace in c.interlaces())
-        self._divider = Divider(
-            # The sum of three products, each below 2**(area and value), doubled; or a slope.
-            dividend_bits=max(self._area_bits + value_bits + 4,
-                              self._slope_bits + 1 + most_shifted),
-            divisor_bits=self._area_bits, fraction_bits=c.fraction_bits,
-            quotient_bits=word_bits + 1, interval=c.setup_interval)
+        self._divider = Divider(**plane_division(c, value_bits=value_bits, word_bits=word_bits))
         super().__init__({
             "grid": In(grid),
             "start": In(1),
@@ -138,7 +156,7 @@ class PlaneSetup(wiring.Component):
             product.b[0].eq(Mux(last, upper, offset)),
         ]
 
-        total = Signal(signed(self._area_bits + self._value_bits + 3), reset_less=True)
+        total = Signal(signed(self._area_bits + self.value_bits + 3), reset_less=True)
         with m.If(started[at_product]):
             m.d.sync += total.eq(product.sum + Mux(slot[at_product] == Slot.STEP_X, 0, total))
         area, steep = (delayed(m, value, product.latency + 1, name)

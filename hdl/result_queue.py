@@ -25,6 +25,7 @@ class ResultQueue(wiring.Component):
     -------
     write: In(1)
     result: In(result_bits)
+        The next of three.
     words: Out(stream of words)
         Arrays of three results, the first in the lowest bits.
     """
@@ -34,7 +35,8 @@ class ResultQueue(wiring.Component):
     def __init__(self, *, result_bits: int, depth: int):
         if depth < 2:
             raise ValueError(f"depth must be at least 2, not {depth}")
-        self._depth = depth
+        self.result_bits = result_bits
+        self.depth = depth
         self._word = data.ArrayLayout(result_bits, 3)
         super().__init__({
             "write": In(1),
@@ -45,7 +47,7 @@ class ResultQueue(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         m.submodules.queue = queue = fifo.SyncFIFOBuffered(width=self._word.size,
-                                                           depth=self._depth)
+                                                           depth=self.depth)
         first, second = (Signal.like(self.result, name=name) for name in ("first", "second"))
         count = Signal(range(3))
         m.d.comb += [

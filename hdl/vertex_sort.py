@@ -41,6 +41,7 @@ class VertexSort(wiring.Component):
     triangle: In(triangle_layout)
         Vertices as in the display list.
     vertices: Out(sorted_vertices_layout)
+        From top to bottom.
     """
 
     latency = 2

@@ -25,9 +25,11 @@ from .machine_options import (
 #: Amaranth and so is not asked here).
 COMPONENT_NAMES = (
     "central_broadcast_controller", "processing_element", "memory_unit", "video_scan_generator",
-    "clear", "depth_test", "edge_walker", "fragment_stepper", "id_increment", "lattice_block",
-    "line_selector", "one_port_memory", "pixel_address", "processing_element_control", "read_back",
-    "response_link", "scan_address", "span_start", "span_walker", "survey",
+    "clear", "depth_test", "divider", "edge_setup", "edge_walker", "fragment_stepper",
+    "id_increment", "lattice_block", "line_selector", "one_port_memory", "pipelined_multiplier",
+    "pixel_address", "pixel_box", "plane_setup", "processing_element_control", "read_back",
+    "response_link", "result_queue", "sampling_grid", "scan_address", "span_start",
+    "span_walker", "survey", "triangle_outline", "triangle_setup", "vertex_sort",
 )
 
 

@@ -1,0 +1,60 @@
+"""Triangles sent as vertices: the frames, pixel for pixel, of triangles that the host prepared."""
+
+import numpy as np
+import pytest
+from frames import check, check_bit_true, joined, random_list, triangles
+
+from cardcage.golden.commands import OPCODE_BITS, Opcode
+from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL, configure
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.simulation import frame_commands, simulate
+from cardcage.testbenches.verilator_engine import VerilatorEngine
+
+#: Degenerate, between centres, and off the screen.
+INVISIBLE = triangles(
+    [[[1, 1], [1, 1], [5, 6]], [[2.6, 2.6], [2.9, 2.6], [2.6, 2.9]], [[-9, 1], [-2, 2], [-3, 7]]],
+    [[0] * 3] * 3, [[[255, 0, 0]] * 3] * 3)
+
+
+def both_ways(display_list, engine, **fields):
+    """The frame of one machine, from vertices and from prepared triangles."""
+    configuration = configure(display_list, setup="hardware", **fields)
+    frames = []
+    for opcode, fraction_bits in ((Opcode.TRIANGLE, None),
+                                  (Opcode.PREPARED_TRIANGLE, configuration.fraction_bits)):
+        words = frame_commands(configuration, display_list, fraction_bits)
+        sent = {word & (1 << OPCODE_BITS) - 1 for word in words}
+        assert sent == {Opcode.FRAME_START, opcode, Opcode.FRAME_END}
+        frames.append(simulate(configuration, display_list, engine, memory_seed=3,
+                               fraction_bits=fraction_bits))
+    vertices, prepared = frames
+    np.testing.assert_array_equal(vertices.video, prepared.video)
+    np.testing.assert_array_equal(vertices.depth, prepared.depth)
+    assert [work.fragments for work in vertices.work] == [
+        work.fragments for work in prepared.work]
+    return configuration, vertices, prepared
+
+
+@pytest.mark.parametrize(("cards", "fields"), [
+    ("PM", {"shading": "flat", "fraction_bits": 5}),
+    ("PMM PMM", {"setup_interval": 12}),
+    ("PM", {"words": 16, "maximum_units": 4, "shading": "flat", "fraction_bits": 20,
+            "setup_interval": MAXIMUM_SETUP_INTERVAL}),  # pulled: 4 x 4 of 8 x 8 pixels
+])
+def test_frames_in_pysim(cards, fields):
+    display_list = joined(joined(random_list(4, 8), INVISIBLE), random_list(5, 4))
+    configuration, vertices, _ = both_ways(display_list, PysimEngine(), cards=cards,
+                                           clocks_per_pixel=2, **fields)
+    check_bit_true(configuration, display_list, vertices)
+
+
+def test_the_teapot_in_verilator():
+    """And fast set-up is done before the processing elements need the next triangle."""
+    display_list = make_display_list("teapot:tessellation=3", width=64, height=64,
+                                     shading="flat").display_list
+    configuration, vertices, prepared = both_ways(
+        display_list, VerilatorEngine(), cards="2x(PMM)", clocks_per_pixel=2)
+    assert configuration.shading == "flat"
+    check(configuration, display_list, vertices)
+    assert vertices.draw_cycles < prepared.draw_cycles + 200
