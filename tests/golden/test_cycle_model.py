@@ -13,8 +13,8 @@ from cardcage.golden.cycle_model import Pipeline, predict_cycles
 from cardcage.golden.display_list import DisplayList
 from cardcage.golden.exact import draw, fragments
 from cardcage.golden.grid import Grid
-from cardcage.golden.lattice_spans import lattice_blocks, lattice_spans
-from cardcage.golden.port_clocks import PortClocks
+from cardcage.golden.lattice_spans import ROW_LIMIT, lattice_blocks, lattice_spans
+from cardcage.golden.port_clocks import WRITE_LATENCY, PortClocks, RowClocks
 from cardcage.golden.scene_display_list import make_display_list
 
 CARDS = ("PM", "PMM", "2x(PM)", "PMPMMM", "4x(PMM)")
@@ -98,9 +98,33 @@ def test_written_fragments():
     assert total == pytest.approx(accesses * 256 / 255, rel=1e-3)
 
 
+@pytest.mark.parametrize("units", [1, 2, 4])
+def test_reads_and_writes_of_rows_clock_by_clock(units):
+    """Against a port that takes the write first, else the read, and two elements interleaved."""
+    pick = random.Random(f"rows {units}")
+    runs = [(pick.randrange(2), pick.randrange(units), pick.choice((1, 1, 2, 3, 4, 7, 20)))
+            for _ in range(300)]
+    clocks = RowClocks(2, units)
+    element, unit, length = (np.array(column) for column in zip(*runs, strict=True))
+    found = np.concatenate([clocks.of(element[part], unit[part], length[part])
+                            for part in (slice(0, 111), slice(111, None))])
+    for chosen in range(2):
+        now, writes = 0, set()
+        for place, (which, in_unit, reads) in enumerate(runs):
+            if which != chosen:
+                continue
+            begin = now
+            while reads:
+                if (now, in_unit) not in writes:
+                    writes.add((now + WRITE_LATENCY, in_unit))
+                    reads -= 1
+                now += 1
+            assert found[place] == now - begin
+
+
 def written_out(configuration, listed, pipeline, depth, setup_clocks):
     """The same recurrence, clock by clock, span by span, FIFO by FIFO."""
-    triangles, parts = spans_of(configuration, listed)
+    triangles, parts = spans_of(configuration, listed, ROW_LIMIT)
     ports = PortClocks(configuration, listed, triangles)
     blocks = lattice_blocks(configuration)
     elements = configuration.processing_elements
