@@ -43,7 +43,7 @@ class Pipeline:
 
     ``broadcast``    from one broadcast to the next, at least
     ``fifo``         from a broadcast to the walker's load, where that is idle
-    ``fifo_room``    from the walker's last row of a triangle until its place is free again
+    ``fifo_room``    from when the walker can load the next triangle until a place is free again
     ``load``         the walker's, per block of units
     ``stride``       per bit of the lattice's stride in y
     ``row``          per lattice row
@@ -56,7 +56,7 @@ class Pipeline:
 
     broadcast: int = 1
     fifo: int = 2
-    fifo_room: int = 1
+    fifo_room: int = 0
     load: int = 1
     stride: int = 1
     row: int = 1
