@@ -83,9 +83,10 @@ class TriangleSetup(wiring.Component):
 
     @property
     def _behind(self) -> int:
-        """Clocks from an outline to its triangle: taken, first to last slot, inputs, results."""
+        """Clocks from an outline to its triangle: taken, first to last slot, inputs, results,
+        queues, pop, output."""
         results = max(part.latency for part in (self._edges, *self._planes.values()))
-        return 1 + (Slot.COUNT - 1) * self.slot_clocks + 1 + results + ResultQueue.latency
+        return 1 + (Slot.COUNT - 1) * self.slot_clocks + 1 + results + ResultQueue.latency + 2
 
     @property
     def latency(self) -> int:
@@ -94,7 +95,7 @@ class TriangleSetup(wiring.Component):
 
     @property
     def depth(self) -> int:
-        """Triangles on their way from outline to output: so many that no slot is lost."""
+        """Triangles on their way from outline to the queues' end: so many that no slot is lost."""
         return -(-self._behind // self.interval) + 1
 
     def elaborate(self, platform):
@@ -112,16 +113,16 @@ class TriangleSetup(wiring.Component):
         inside = Signal(range(self.depth + 1))
         begin = Signal()
         ends = Signal()
+        pop = Signal()
         entering = outlines.outlines.valid & outlines.outlines.ready
-        leaving = self.triangles.valid & self.triangles.ready
         slot_ends = clock == self.slot_clocks - 1
         m.d.comb += [
             begin.eq(active & (clock == 0)),
             ends.eq(active & slot_ends & (slot == Slot.COUNT - 1)),
             outlines.outlines.ready.eq((~active | ends) & (inside != self.depth)),
-            self.busy.eq(outlines.busy | (inside != 0)),
+            self.busy.eq(outlines.busy | (inside != 0) | self.triangles.valid),
         ]
-        m.d.sync += inside.eq(inside + entering - leaving)
+        m.d.sync += inside.eq(inside + entering - pop)
         with m.If(active):
             m.d.sync += clock.eq(Mux(slot_ends, 0, clock + 1))
             with m.If(slot_ends):
@@ -136,7 +137,7 @@ class TriangleSetup(wiring.Component):
         begun = delayed(m, begin, 1, "begun", reset_less=False)
         self._start_edges(m, outline, slot, begun, grid, lengths)
         self._start_planes(m, outline, slot, begun, grid, lengths)
-        self._collect(m, outline, begin & (slot == 0))
+        self._collect(m, outline, begin & (slot == 0), pop)
         return m
 
     def _lengths(self, m, outline, grid):
@@ -206,9 +207,13 @@ class TriangleSetup(wiring.Component):
             m.d.sync += [getattr(plane, part).eq(outline.values[name][part])
                          for part in ("upper", "first", "second")]
 
-    def _collect(self, m, outline, enter):
-        """Queues of all results, and a triangle when each has its part."""
-        triangle = self.triangles.payload
+    def _collect(self, m, outline, enter, pop):
+        """Queues of all results; when each has its part they are popped into the output register.
+
+        Known in one clock, popped in the next, since the queues lie far apart: so at most every
+        other clock, still sooner than triangles come.
+        """
+        triangle = Signal(self.triangles.payload.shape())
         head = data.StructLayout({"box": box_layout(self.configuration), "clockwise": 1,
                                   "color": outline.color.shape()})
         m.submodules.head_queue = heads = fifo.SyncFIFOBuffered(width=head.size, depth=self.depth)
@@ -216,7 +221,7 @@ class TriangleSetup(wiring.Component):
         m.d.comb += [
             heads.w_en.eq(enter),
             heads.w_data.eq(Cat(outline.box, outline.clockwise, outline.color)),
-            heads.r_en.eq(leaving := self.triangles.valid & self.triangles.ready),
+            heads.r_en.eq(pop),
             triangle.long_edge_left.eq(popped.clockwise),
         ]
         m.d.comb += [triangle[name].eq(popped.box[name]) for name in popped.box.shape().members]
@@ -237,9 +242,13 @@ class TriangleSetup(wiring.Component):
             queue = ResultQueue(result_bits=len(result), depth=self.depth)
             m.submodules[f"{name}_queue"] = queue
             m.d.comb += [queue.write.eq(done), queue.result.eq(result),
-                         queue.words.ready.eq(leaving)]
+                         queue.words.ready.eq(pop)]
             m.d.comb += [target.eq(queue.words.payload[place])
                          for place, target in enumerate(targets)]
             queues.append(queue)
-        m.d.comb += self.triangles.valid.eq(
-            reduce(and_, (queue.words.valid for queue in queues), heads.r_rdy))
+        complete = reduce(and_, (queue.words.valid for queue in queues), heads.r_rdy)
+        m.d.sync += pop.eq(complete & ~pop & (~self.triangles.valid | self.triangles.ready))
+        with m.If(pop):
+            m.d.sync += [self.triangles.payload.eq(triangle), self.triangles.valid.eq(1)]
+        with m.Elif(self.triangles.ready):
+            m.d.sync += self.triangles.valid.eq(0)

@@ -106,7 +106,7 @@ def test_equal_to_golden_under_random_stalls(kind):
 
 
 @pytest.mark.parametrize(("kind", "count", "wait"), [
-    ("flat", 60, 250), ("a few stages", 30, 500), ("one divider", 24, 900)])
+    ("flat", 60, 250), ("a few stages", 30, 500), ("one divider", 36, 900)])
 def test_a_list_that_waits_at_the_output(kind, count, wait):
     """All queues fill up, the input waits, and nothing is lost or out of order."""
     configuration = machine(kind)
