@@ -19,4 +19,4 @@ class Activity(IntEnum):
     BROADCAST = 6  # nothing to draw: the FIFO of another processing element was full
     SETUP = 7  # nothing to draw: the next triangle was not set up
     DRAIN = 8  # nothing to draw, and no more to come: others, or the last writes, took longer
-    SERVICE = 9  # clearing, surveying, reporting
+    SERVICE = 9  # surveying, reporting

@@ -33,7 +33,7 @@ Layout: TypeAlias = "dict[str, int | Layout]"
 class Opcode(IntEnum):
     """What the host can ask for."""
 
-    FRAME_START = 1  # clear the back picture to the background colour
+    FRAME_START = 1  # the back picture is the background colour throughout
     TRIANGLE = 2  # vertices, for the machine with set-up in hardware
     PREPARED_TRIANGLE = 3  # increments computed by the host
     FRAME_END = 4  # finish the picture, show it from the next scan on
@@ -47,12 +47,12 @@ class ResponseKind(IntEnum):
     DOMAIN = 1  # at boot, per processing element: first unit << 16 | number of units
     UNITS = 2  # at boot: units in some domain << 16 | total units
     PICTURE = 3  # at boot: the machine's height << 16 | width
-    BOOTED = 4  # at boot: cycles from reset until both pictures were clear
+    BOOTED = 4  # at boot: cycles from reset until both pictures were black
     FRAME_DRAWN = 5  # cycles from the frame start to the last processing element's done
     FRAME_SHOWN = 6  # scans that began with the old picture since the frame start
     DEPTH = 7  # one word of the depth buffer, units in order, addresses ascending
     FRAGMENTS = 8  # per processing element: fragments tested since the frame start
-    BUSY = 9  # per processing element: cycles it drew or cleared since the frame start
+    BUSY = 9  # per processing element: cycles it drew since the frame start
     ERROR = 10  # one of Fault
 
 

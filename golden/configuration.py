@@ -25,6 +25,8 @@ from .video_timing import VideoTiming, video_timing
 
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
+MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
+MAXIMUM_TAG_BITS = 6
 CHANNEL_BITS = COLOR_BITS
 
 
@@ -41,6 +43,8 @@ class MachineConfiguration:
     ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
     ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
     ``fifo_depth``        primitives a processing element can hold in waiting
+    ``memory_ports``      of a memory unit: 1, shared by all, or 2, as FPGAs have them
+    ``tag_bits``          of the frame's tag beside each depth and colour, which spares the clear
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
     ``timing``            blanking and sync of a scan; None means the standard one for the size
     ``allow_orphans``     accept memory units left of every processing element
@@ -73,6 +77,8 @@ class MachineConfiguration:
     words: int = 0
     maximum_units: int = 0
     fifo_depth: int = 16
+    memory_ports: int = 1
+    tag_bits: int = 4
     clocks_per_pixel: int = 4
     timing: VideoTiming = field(default=None)  # type: ignore[assignment]
     allow_orphans: bool = False
@@ -99,6 +105,8 @@ class MachineConfiguration:
             ("words", 0, MAXIMUM_WORDS),
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
+            ("memory_ports", 1, 2),
+            ("tag_bits", MINIMUM_TAG_BITS, MAXIMUM_TAG_BITS),
             ("clocks_per_pixel", 2, 256),
             ("setup_interval", 1, MAXIMUM_SETUP_INTERVAL),
             ("depth_integer_bits", 0, 64),

@@ -11,6 +11,8 @@
               ▲ total                  │          │     ┆ a PE ignores the lines from its left
               └────────────────────────┼──────────┼───────────────────┘
                                        │          │
+      CBC ──pictures───────────────────┼──────────┼───────────────────
+          ◀─swept──────────────────────┼──────────┼─────────────────── (wired and)
       video scan generator ──scan──────┴──────────┴───────────────────
                            ◀─video──────────────────────────────────── (wired or)
 """
@@ -25,21 +27,13 @@ from .layouts import broadcast_layout, response_layout
 __all__ = [
     "BroadcastLines",
     "Connector",
-    "Lane",
+    "PictureLines",
     "ProcessingElementLines",
     "ScanLines",
     "read_request_layout",
     "scan_address_layout",
     "write_request_layout",
 ]
-
-
-class Lane:
-    """Bits of a write request's ``lanes``: which parts of a word a write changes."""
-
-    DEPTH = 0b001
-    BACK = 0b010
-    FRONT = 0b100
 
 
 def read_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
@@ -52,13 +46,11 @@ def read_request_layout(configuration: MachineConfiguration) -> data.StructLayou
 
 
 def write_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """Write the ``lanes`` of a word in one unit, or in ``every`` unit of the domain."""
+    """Write the depth and the back colour at an address of a unit."""
     return data.StructLayout({
         "valid": 1,
-        "every": 1,
         "unit": configuration.id_bits,
         "address": configuration.address_bits,
-        "lanes": 3,
         "depth": configuration.depth_bits,
         "color": 3 * CHANNEL_BITS,
     })
@@ -67,20 +59,21 @@ def write_request_layout(configuration: MachineConfiguration) -> data.StructLayo
 class ProcessingElementLines(wiring.Signature):
     """The bus of one processing element to the memory units of its domain (figure 12).
 
-    A read and a write can go to two different units in the same clock.  Each
-    takes place in a clock in which its ``valid`` is high and its busy line is
-    low; a request that no unit answers is never busy.
+    A read and a write can go to two different units in the same clock, or to one
+    with two ports.  Each takes place in a clock in which its ``valid`` is high
+    and its busy line is low; a request that no unit answers is never busy.  A read
+    sees every write that took place before it or in the same clock.
 
     Members
     -------
     read: Out(read_request_layout)
     read_busy: In(1)
-        The unit's port is taken by the scan or by a write.
+        The unit's one port is taken by the scan or by a write.
     read_data: In(depth_bits)
         Depth, in the clock after the read; 0 when no unit answered.
     write: Out(write_request_layout)
     write_busy: In(1)
-        A unit's port is taken by the scan.
+        The unit's one port is taken by the scan.
     """
 
     def __init__(self, configuration: MachineConfiguration):
@@ -135,6 +128,42 @@ class BroadcastLines(wiring.Signature):
             "packet": Out(broadcast_layout(configuration)),
             "ready": In(1),
             "done": In(1),
+        })
+
+
+class PictureLines(wiring.Signature):
+    """The controller's lines to every memory unit: the picture shown and the one drawn.
+
+    Each lane of a memory unit has one current tag.  What is written gets it; a
+    word with another tag reads as background.
+
+    Members
+    -------
+    front: Out(1)
+        Which of the two colours is shown; the other is the back picture.
+    depth_tag: Out(tag_bits)
+    color_tag: Out(tag_bits) [2]
+        The current tags; never 0.
+    background: Out(24)
+        What the front colour shows for a word with another tag.
+    initialise: Out(1)
+        Begin a pass that gives tag 0 to every lane of every word; only while ``swept``.
+    sweep: Out(1)
+        Begin a pass that gives tag 0 to lanes whose tag is not the current one; only while
+        ``swept``.
+    swept: In(1)
+        The memory unit is in no pass (wired and over all).
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "front": Out(1),
+            "depth_tag": Out(configuration.tag_bits),
+            "color_tag": Out(configuration.tag_bits).array(2),
+            "background": Out(3 * CHANNEL_BITS),
+            "initialise": Out(1),
+            "sweep": Out(1),
+            "swept": In(1),
         })
 
 

@@ -7,7 +7,8 @@ from amaranth.lib.wiring import In, Out
 from ..golden import commands
 from ..golden.commands import Fault, Opcode, ResponseKind
 from ..golden.configuration import MachineConfiguration
-from .backplane import BroadcastLines, Connector
+from .backplane import BroadcastLines, Connector, PictureLines
+from .frame_tags import FrameTags
 from .layouts import Operation, broadcast_layout, response_layout
 from .triangle_setup import TriangleSetup
 
@@ -20,12 +21,14 @@ SETTLE_CLOCKS = 3
 class CentralBroadcastController(wiring.Component):
     """Takes commands from the host and tells all processing elements at once (figure 12).
 
-    After reset it has the processing elements survey their domains and clear
-    both pictures, and reports: each domain, owned and total units, the
-    resolution, the cycles it took.  Then it takes commands in order; every
-    opcode and response is described in ``golden.commands``.  A finished picture
-    is shown from the start of the next scan on; until then the old one stays,
-    whole.
+    After reset it has the processing elements survey their domains and the memory
+    units initialise both pictures, and reports: each domain, owned and total
+    units, the resolution, the cycles it took.  Then it takes commands in order;
+    every opcode and response is described in ``golden.commands``.  A frame starts
+    with a new tag, by which every word is background, in the clock after its
+    command where nothing is drawn any more; it waits only for a tag that no word
+    has (``FrameTags``).  A finished picture is shown from the start of the next
+    scan on; until then the old one stays, whole.
 
     Prepared triangles pass straight from the command to the broadcast.  With set-up
     in hardware the others go through ``TriangleSetup``, which works on the next ones
@@ -46,14 +49,14 @@ class CentralBroadcastController(wiring.Component):
     broadcast: Out(BroadcastLines)
     scan_start: In(1)
         A scan begins.
-    front: Out(1)
-        Which of the two colours in the memory units is shown.
+    pictures: Out(PictureLines)
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        self.tags = FrameTags(configuration=configuration)
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -61,7 +64,7 @@ class CentralBroadcastController(wiring.Component):
             "total": In(configuration.id_bits),
             "broadcast": Out(BroadcastLines(configuration)),
             "scan_start": In(1),
-            "front": Out(1),
+            "pictures": Out(PictureLines(configuration)),
             **({"more": Out(1)} if configuration.observe else {}),
         })
 
@@ -85,6 +88,11 @@ class CentralBroadcastController(wiring.Component):
             m.d.sync += scans.eq(scans + 1)
         supported, picture = self._picture(m)
         self._count_owned(m, owned)
+        pictures = self.pictures
+        backgrounds = [Signal.like(pictures.background, name=f"background_{place}")
+                       for place in range(2)]
+        self._tags(m)
+        m.d.comb += pictures.background.eq(Mux(pictures.front, *reversed(backgrounds)))
 
         def announce(operation, then=None, *, when=1):
             """Strobe the packet as soon as all are ready."""
@@ -140,9 +148,9 @@ class CentralBroadcastController(wiring.Component):
                 with m.If(~supported):
                     m.next = "REFUSE"
             with m.State("INITIALISE"):
-                m.d.comb += packet.body.clear.front.eq(1)
-                announce(Operation.CLEAR, "INITIALISING")
-            with m.State("INITIALISING"), m.If(quiet):
+                m.d.comb += pictures.initialise.eq(1)
+                m.next = "INITIALISING"
+            with m.State("INITIALISING"), m.If(pictures.swept):
                 booted = Signal.like(cycles)
                 m.d.sync += booted.eq(cycles)
                 m.next = "REPORT_PICTURE"
@@ -162,10 +170,12 @@ class CentralBroadcastController(wiring.Component):
                         m.d.comb += packet.body.draw.eq(body)
                         announce(Operation.DRAW)
                     with m.Case(Opcode.FRAME_START):
-                        clear = packet.body.clear
-                        m.d.comb += Cat(clear.red, clear.green, clear.blue).eq(body)
+                        m.d.comb += self.commands.ready.eq(1)
                         m.d.sync += [frame_cycles.eq(0), scans.eq(self.scan_start)]
-                        announce(Operation.CLEAR)
+                        for place, background in enumerate(backgrounds):
+                            with m.If(pictures.front != place):
+                                m.d.sync += background.eq(body)
+                        m.next = "START_FRAME"
                     with m.Case(Opcode.FRAME_END):
                         m.d.comb += self.commands.ready.eq(1)
                         m.next = "DRAWING"
@@ -178,6 +188,10 @@ class CentralBroadcastController(wiring.Component):
                     with m.Default():
                         m.d.comb += self.commands.ready.eq(1)
                         m.next = "UNKNOWN"
+            with m.State("START_FRAME"):
+                # What is still drawn belongs to the old tag, and so waits for the new one.
+                announce(Operation.FRAME_START, "COMMAND", when=quiet & self.tags.ready)
+                m.d.comb += self.tags.start.eq(self.broadcast.strobe)
             with m.State("UNKNOWN"):
                 respond(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
             with m.State("ANSWERING"), m.If(quiet):
@@ -191,7 +205,7 @@ class CentralBroadcastController(wiring.Component):
             with m.State("SWAP"), m.If(self.scan_start):
                 # Every pixel of the scan that begins here is fetched after this edge.
                 shown = Signal.like(scans)
-                m.d.sync += [self.front.eq(~self.front), shown.eq(scans)]
+                m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(scans)]
                 m.next = "REPORT_SHOWN"
             with m.State("REPORT_SHOWN"):
                 respond(ResponseKind.FRAME_SHOWN, shown, "COMMAND")
@@ -203,6 +217,18 @@ class CentralBroadcastController(wiring.Component):
                 with m.If(self.commands.valid):
                     m.next = "REFUSE"
         return m
+
+    def _tags(self, m):
+        """What the memory units are told of the frames' tags."""
+        m.submodules.tags = tags = self.tags
+        pictures = self.pictures
+        m.d.comb += [
+            tags.back.eq(~pictures.front),
+            tags.swept.eq(pictures.swept),
+            pictures.sweep.eq(tags.sweep),
+            pictures.depth_tag.eq(tags.depth),
+            *(line.eq(tag) for line, tag in zip(pictures.color_tag, tags.color, strict=True)),
+        ]
 
     def _picture(self, m):
         """Whether the number of units is one the cards can interlace, and the resolution."""

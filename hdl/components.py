@@ -6,12 +6,12 @@ from amaranth.lib import wiring
 
 from ..golden.configuration import MachineConfiguration
 from .central_broadcast_controller import CentralBroadcastController
-from .clear import Clear
 from .depth_test import DepthTest
 from .divider import Divider
 from .edge_setup import EdgeSetup
 from .edge_walker import EdgeWalker
 from .fragment_stepper import FragmentStepper
+from .frame_tags import FrameTags
 from .id_increment import IdIncrement
 from .interlace import LatticeBlock, PixelAddress, ScanAddress
 from .line_selector import LineSelector
@@ -29,8 +29,10 @@ from .sampling_grid import SamplingGrid
 from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
+from .tag_sweep import TagSweep
 from .triangle_outline import TriangleOutline
 from .triangle_setup import TriangleSetup
+from .two_port_memory import TwoPortMemory
 from .vertex_sort import VertexSort
 from .video_scan_generator import VideoScanGenerator
 
@@ -48,17 +50,18 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "processing_element": lambda c: ProcessingElement(configuration=c),
     "memory_unit": lambda c: MemoryUnit(configuration=c),
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
-    "clear": lambda c: Clear(configuration=c),
     "depth_test": lambda c: DepthTest(configuration=c),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
     "edge_walker": lambda c: EdgeWalker(configuration=c),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
+    "frame_tags": lambda c: FrameTags(configuration=c),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
-    # The processing element has four users of its lines.
-    "line_selector": lambda c: LineSelector(configuration=c, sources=4),
-    "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits),
+    # The processing element has three users of its lines.
+    "line_selector": lambda c: LineSelector(configuration=c, sources=3),
+    "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
+                                               tag_bits=c.tag_bits),
     # That of a triangle's area.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
         a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
@@ -74,7 +77,10 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "span_start": lambda c: SpanStart(configuration=c),
     "span_walker": lambda c: SpanWalker(configuration=c),
     "survey": lambda c: Survey(configuration=c),
+    "tag_sweep": lambda c: TagSweep(configuration=c),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),
     "triangle_setup": lambda c: TriangleSetup(configuration=c),
+    "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.depth_bits,
+                                               tag_bits=c.tag_bits),
     "vertex_sort": lambda c: VertexSort(configuration=c),
 }

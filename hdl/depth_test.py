@@ -5,7 +5,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .backplane import Lane, ProcessingElementLines
+from .backplane import ProcessingElementLines
 from .fragment_stepper import fragment_layout
 
 __all__ = ["DepthTest"]
@@ -110,6 +110,5 @@ class DepthTest(wiring.Component):
             memory.write.address.eq(write.address),
             memory.write.depth.eq(write.depth),
             memory.write.color.eq(write.color),
-            memory.write.lanes.eq(Lane.DEPTH | Lane.BACK),
         ]
         return m

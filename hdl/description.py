@@ -16,10 +16,11 @@ from .members import described_ports, stated_timing
 
 __all__ = ["component_for", "describe"]
 
-#: The four boards and what of the processing element states figures.
+#: The four boards and what of them states figures.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
           "video_scan_generator", "span_walker", "span_start", "fragment_stepper", "depth_test",
-          "clear", "read_back", "response_link", "survey", "one_port_memory")
+          "read_back", "response_link", "survey", "frame_tags", "tag_sweep")
+_TIMED_MEMORY = {1: "one_port_memory", 2: "two_port_memory"}  # by its ports
 
 
 def _inspected(component: wiring.Component, facts):
@@ -42,7 +43,7 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
     """
     top = name or "machine"
     modules = _modules(verilog)
-    timed = (name,) if name else _TIMED
+    timed = (name,) if name else (*_TIMED, _TIMED_MEMORY[configuration.memory_ports])
     if name is None and configuration.setup == "hardware":
         timed += ("triangle_setup",)
     return {
@@ -102,6 +103,7 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
                meaning="first pixel column not left of an edge, exact on each of its rows; sums "
                "wrap, the column on a row does not"),
         number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
+        number("tag", c.tag_bits, "tag of a frame, beside each depth and colour; 0 is none's"),
         number("depth_plane", c.depth_plane_bits, signed=True, fraction_bits=fraction,
                meaning="depth as it is stepped, guard bits above; sums wrap, the value at a pixel "
                "does not"),

@@ -20,7 +20,7 @@ class Operation(enum.Enum, shape=3):
     """What the central broadcast controller can tell every processing element at once."""
 
     SURVEY = 1  # find the memory units of your domain and report them
-    CLEAR = 2  # background depth and colour into every word
+    FRAME_START = 2  # count from here on
     DRAW = 3  # rasterise one prepared triangle
     READ_DEPTH = 4  # send every depth word of your domain
     READ_COUNTERS = 5  # send your counts since the last frame start
@@ -38,19 +38,11 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> data.Struct
     return struct_layout(commands.prepared_triangle_layout(configuration))
 
 
-def clear_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """What ``Operation.CLEAR`` carries: a colour, and whether the front picture goes too."""
-    return data.StructLayout({**struct_layout(commands.frame_start_layout()).members, "front": 1})
-
-
 def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """One broadcast word: an operation and its body."""
     return data.StructLayout({
         "operation": Operation,
-        "body": data.UnionLayout({
-            "draw": prepared_triangle_layout(configuration),
-            "clear": clear_layout(configuration),
-        }),
+        "body": data.UnionLayout({"draw": prepared_triangle_layout(configuration)}),
     })
 
 

@@ -25,8 +25,8 @@ class Machine(wiring.Component):
     """The card cage of figures 12 and 15: controller left, cards in order, scan generator.
 
     Only connections: the slots' connectors from left to right, the total units
-    back from the right end, broadcast and scan lines to all, and the wired
-    answers (ready and done: and; video: or).
+    back from the right end, broadcast, picture and scan lines to all, and the
+    wired answers (ready, done and swept: and; video: or).
 
     Members
     -------
@@ -123,7 +123,15 @@ class Machine(wiring.Component):
                 element.broadcast.packet.eq(controller.broadcast.packet),
             ]
 
-        fixed.d.comb += [unit.front.eq(controller.front) for unit in units]
+        pictures = wires(m, "picture_wires")
+        pictures.d.comb += controller.pictures.swept.eq(
+            reduce(and_, (unit.pictures.swept for unit in units), C(1)))
+        for unit in units:
+            pictures.d.comb += [
+                getattr(unit.pictures, name).eq(getattr(controller.pictures, name))
+                for name in ("front", "depth_tag", "background", "initialise", "sweep")]
+            pictures.d.comb += [tag.eq(source) for tag, source in zip(
+                unit.pictures.color_tag, controller.pictures.color_tag, strict=True)]
         scan.d.comb += [
             controller.scan_start.eq(generator.start),
             generator.scan.video.eq(reduce(or_, (unit.scan.video for unit in units), C(0))),

@@ -20,11 +20,11 @@ _STREAM = {
 #: What means the same wherever it comes without a text of its own.
 _COMMON = {
     "address": "word of the memory",
-    "busy_cycles": "cycles drawn or cleared since the frame start",
-    "clear_start": "begin to clear",
-    "clear_done": "cleared",
+    "back": "which of the two colours is drawn into",
+    "busy_cycles": "cycles drawn since the frame start",
     "color": "red in the low byte, then green, blue",
     "column": "the first pixel column not left of the edge",
+    "depth_tag": "current tag of the depths",
     "end": "first memory unit after the domain",
     "first": "first memory unit of the domain",
     "fragments": "fragments tested since the frame start",
@@ -44,7 +44,6 @@ _COMMON = {
     "survey_start": "begin to survey",
     "survey_done": "surveyed",
     "surveying": "the survey has the memory lines",
-    "clearing": "clearing has the memory lines",
     "total": "number of memory units in the cage",
     "right": "from or to the right",
     "write": "request to write",

@@ -5,10 +5,12 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .backplane import Connector, Lane, ScanLines
+from .backplane import Connector, PictureLines, ScanLines
 from .id_increment import IdIncrement
 from .interlace import ScanAddress
 from .one_port_memory import OnePortMemory
+from .tag_sweep import TagSweep
+from .two_port_memory import TwoPortMemory
 from .wires import wires
 
 __all__ = ["MemoryUnit"]
@@ -17,15 +19,22 @@ __all__ = ["MemoryUnit"]
 class MemoryUnit(wiring.Component):
     """Depth, front and back colour of the pixels that fall to its number (figures 6 to 11).
 
-    Its number and the total come from the lines alone.  In each clock its one
-    port serves the scan generator, else a write of its processing element, else
-    a read; whoever waits sees ``busy``.  The scan's colour goes into an output
-    register, which drives the video bus while the scan shows a pixel of this
-    unit, so the processing element has the port in the meantime.
+    Its number and the total come from the lines alone.  With one port
+    (``memory_ports``) each clock serves the scan generator, else a write of its
+    processing element, else a read; whoever waits sees ``busy``.  With two nobody
+    ever waits.  The scan's colour goes into an output register, which drives the
+    video bus while the scan shows a pixel of this unit, so the processing element
+    has the port in the meantime.
+
+    Each lane of a word has a tag beside it.  One that is not the lane's current
+    tag reads as background: depth 2^d - 1, or the background colour of the picture
+    shown.  A new frame is a new tag, and no word need be cleared; clocks in which
+    nobody asks for anything are used to take old tags out (``TagSweep``).
 
     Latency: a scan fetch is on the video bus three clocks later; read data come
-    one clock after the read.  Throughput: one access a clock, of whichever kind.
-    Scan reads per line: at most ``Interlace.pitch``.
+    one clock after the read.  Throughput: one access a clock, of whichever kind;
+    with two ports a scan fetch, a read and a write.  Scan reads per line: at most
+    ``Interlace.pitch``.
 
     Members
     -------
@@ -34,42 +43,43 @@ class MemoryUnit(wiring.Component):
     total: In(id_bits)
         Number of memory units in the cage.
     scan: In(ScanLines)
-    front: In(1)
-        Which of the two colours is shown; the other is the back picture.
+    pictures: In(PictureLines)
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.memory = OnePortMemory(words=configuration.words, depth_bits=configuration.depth_bits)
+        kind = {1: OnePortMemory, 2: TwoPortMemory}[configuration.memory_ports]
+        self.memory = kind(words=configuration.words, depth_bits=configuration.depth_bits,
+                           tag_bits=configuration.tag_bits)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
             "scan": In(ScanLines(configuration)),
-            "front": In(1),
+            "pictures": In(PictureLines(configuration)),
         })
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.memory = memory = self.memory
+        m.submodules.memory = self.memory
         m.submodules.increment = increment = IdIncrement(bits=self.configuration.id_bits)
         number = self.left.id
         m.d.comb += [increment.left.eq(number), self.right.id.eq(increment.right)]
 
-        scan_read, scan_address = self._scan(m, memory, number)
-        self._serve(m, memory, number, scan_read, scan_address)
+        self._scan(m, number)
+        self._serve(m, number)
+        self._sweep(m)
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))
         return m
 
-    def _scan(self, m, memory, number):
+    def _scan(self, m, number):
         """Fetch, capture, drive: one clock each."""
         m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
         m.submodules.show = show = ScanAddress(configuration=self.configuration)
-        scan_read = Signal()
+        access, pictures = self.memory.access, self.pictures
         captured = Signal()
-        scan_address = Signal(self.configuration.address_bits)
         output = Signal.like(self.scan.video)
         scan = wires(m, "scan_wires")
         for address, line in ((fetch, self.scan.fetch), (show, self.scan.show)):
@@ -78,43 +88,69 @@ class MemoryUnit(wiring.Component):
                 address.x.eq(line.x), address.y.eq(line.y),
             ]
         scan.d.comb += self.scan.video.eq(Mux(show.selected, output, 0))
+        scan_read = Signal()
+        scan_address = Signal(self.configuration.address_bits)
         m.d.sync += [
             scan_read.eq(self.scan.fetch.valid & fetch.fetch),
             scan_address.eq(fetch.address),
             captured.eq(scan_read),
         ]
+        m.d.comb += [access.scan.eq(scan_read), access.scan_address.eq(scan_address)]
         with m.If(captured):
-            m.d.sync += output.eq(Mux(self.front, memory.color[1], memory.color[0]))
-        return scan_read, scan_address
+            color, tag = (Signal(access.color[0].shape(), name="shown"),
+                          Signal.like(pictures.depth_tag, name="shown_tag"))
+            m.d.comb += [
+                color.eq(Mux(pictures.front, access.color[1], access.color[0])),
+                tag.eq(Mux(pictures.front, pictures.color_tag[1], pictures.color_tag[0])),
+            ]
+            m.d.sync += output.eq(Mux(color.tag == tag, color.value, pictures.background))
 
-    def _serve(self, m, memory, number, scan_read, scan_address):
-        """Scan first, then the processing element's write, then its read."""
+    def _serve(self, m, number):
+        """What the processing element asks for, and its answer."""
         lines, onward = self.left.lines, self.right.lines
         write, read = lines.write, lines.read
+        access, pictures = self.memory.access, self.pictures
         write_here = Signal()
         read_here = Signal()
         answered = Signal()
+        answer = Signal(self.configuration.depth_bits)
         wires(m, "line_wires").d.comb += [onward.write.eq(write), onward.read.eq(read)]
         m.d.comb += [
-            write_here.eq(write.valid & (write.every | (write.unit == number))),
+            write_here.eq(write.valid & (write.unit == number)),
+            access.write.eq(write_here),
+            access.back.eq(~pictures.front),
+            access.write_address.eq(write.address),
+            access.depth_in.value.eq(write.depth),
+            access.depth_in.tag.eq(pictures.depth_tag),
+            access.color_in.value.eq(write.color),
+            access.color_in.tag.eq(
+                Mux(pictures.front, pictures.color_tag[0], pictures.color_tag[1])),
+            lines.write_busy.eq(onward.write_busy | (write_here & access.write_busy)),
+
             read_here.eq(read.valid & (read.unit == number)),
-            lines.write_busy.eq(onward.write_busy | (write_here & scan_read)),
-            lines.read_busy.eq(onward.read_busy | (read_here & (scan_read | write_here))),
-            lines.read_data.eq(onward.read_data | Mux(answered, memory.depth, 0)),
-            memory.depth_in.eq(write.depth),
-            memory.color_in.eq(write.color),
+            access.read.eq(read_here),
+            access.read_address.eq(read.address),
+            lines.read_busy.eq(onward.read_busy | (read_here & access.read_busy)),
+            answer.eq(Mux(access.depth.tag == pictures.depth_tag, access.depth.value,
+                          self.configuration.depth_background)),
+            lines.read_data.eq(onward.read_data | Mux(answered, answer, 0)),
         ]
-        with m.If(scan_read):
-            m.d.comb += [memory.address.eq(scan_address), memory.read.eq(1)]
-        with m.Elif(write_here):
-            back = write.lanes & Lane.BACK != 0
-            front = write.lanes & Lane.FRONT != 0
-            m.d.comb += [
-                memory.address.eq(write.address),
-                memory.write.eq(Cat(write.lanes & Lane.DEPTH != 0,
-                                    Mux(self.front, back, front),
-                                    Mux(self.front, front, back))),
-            ]
-        with m.Else():
-            m.d.comb += [memory.address.eq(read.address), memory.read.eq(read_here)]
-        m.d.sync += answered.eq(read_here & ~scan_read & ~write_here)
+        m.d.sync += answered.eq(read_here & ~access.read_busy)
+
+    def _sweep(self, m):
+        m.submodules.tag_sweep = sweep = TagSweep(configuration=self.configuration)
+        access, pictures = self.memory.access, self.pictures
+        current = (pictures.depth_tag, *pictures.color_tag)
+        m.d.comb += [
+            sweep.start.eq(pictures.sweep),
+            sweep.initialise.eq(pictures.initialise),
+            pictures.swept.eq(sweep.idle),
+            access.sweep.eq(sweep.sweep),
+            access.erase.eq(sweep.erase),
+            access.sweep_address.eq(sweep.address),
+            sweep.busy.eq(access.sweep_busy),
+            sweep.stale.eq(Cat(word.tag.any() & (word.tag != tag) for word, tag in
+                               zip((access.depth, *access.color), current, strict=True))),
+        ]
+        with m.If(access.write & ~access.write_busy & (access.write_address == sweep.address)):
+            m.d.comb += sweep.overwritten.eq(Cat(1, ~access.back, access.back))

@@ -1,79 +1,73 @@
-"""The RAM of a memory unit: one port, one access a clock."""
+"""The RAM of a memory unit of 1979: one port, one access a clock."""
 
 from amaranth.hdl import *
 from amaranth.lib import data, memory, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import In
 
-from ..golden.configuration import CHANNEL_BITS, MAXIMUM_WORDS
+from .memory_access import MemoryAccess
 
 __all__ = ["OnePortMemory"]
 
 
 class OnePortMemory(wiring.Component):
-    """Three lanes a word, behind one address (figure 6): depth, and two colours.
+    """Three lanes a word behind one address (figure 6): in each clock one user's access.
 
-    One access takes place in each clock: a write of the lanes named, or a read
-    when no lane is.  Contents are unknown after power-on.
-
-    Latency: one clock from ``address`` to the data.  Throughput: one access a clock.
+    Latency: one clock from a read to the data.  Throughput: one access a clock,
+    of whichever kind.
 
     Members
     -------
-    address: In(range(words))
-    read: In(1)
-        Read the word; the data hold until the next read.
-    write: In(3)
-        Write enable of each lane: depth, colour 0, colour 1.
-    depth_in, color_in: In
-        What is written.
-    depth: Out(depth_bits)
-        Depth of the word last read.
-    color: Out(24) [2]
-        Both colours of the word last read.
+    access: In(MemoryAccess)
 
-    Raises ``ValueError`` for ``words`` or ``depth_bits`` out of range.
+    Raises ``ValueError`` for a size out of range.
     """
 
-    def __init__(self, *, words: int, depth_bits: int):
-        if not 1 <= words <= MAXIMUM_WORDS:
-            raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
-        if not 1 <= depth_bits <= 32:
-            raise ValueError(f"depth_bits must be 1 to 32, not {depth_bits!r}")
+    latency = 1
+
+    def __init__(self, *, words: int, depth_bits: int, tag_bits: int):
+        access = MemoryAccess(words=words, depth_bits=depth_bits, tag_bits=tag_bits)
         self.words = words
         self.depth_bits = depth_bits
-        color_bits = 3 * CHANNEL_BITS
+        self.tag_bits = tag_bits
         # Lanes of one width, so that it is one RAM with lane enables and not three.
-        lane = unsigned(max(depth_bits, color_bits))
-        self.storage = memory.Memory(shape=data.ArrayLayout(lane, 3), depth=words, init=[])
-        super().__init__({
-            "address": In(range(max(2, words))),
-            "read": In(1),
-            "write": In(3),
-            "depth_in": In(depth_bits),
-            "color_in": In(color_bits),
-            "depth": Out(depth_bits),
-            "color": Out(color_bits).array(2),
-        })
+        lane = max(Shape.cast(access.members[name].shape).width
+                   for name in ("depth_in", "color_in"))
+        # A read never meets a write, which synthesis cannot know.
+        self.storage = memory.Memory(shape=data.ArrayLayout(lane, 3), depth=words, init=[],
+                                     attrs={"no_rw_check": 1})
+        super().__init__({"access": In(access)})
 
     @property
-    def latency(self) -> int:
-        return 1
+    def storages(self) -> list[memory.Memory]:
+        return [self.storage]
 
     def elaborate(self, platform):
         m = Module()
         m.submodules.storage = self.storage
+        access = self.access
         write, read = self.storage.write_port(granularity=1), self.storage.read_port()
+        address = Signal.like(access.scan_address)
+        with m.If(access.scan):
+            m.d.comb += [address.eq(access.scan_address), read.en.eq(1)]
+        with m.Elif(access.write):
+            m.d.comb += [address.eq(access.write_address),
+                         write.en.eq(Cat(1, ~access.back, access.back))]
+        with m.Elif(access.read):
+            m.d.comb += [address.eq(access.read_address), read.en.eq(1)]
+        with m.Else():
+            m.d.comb += [address.eq(access.sweep_address), read.en.eq(access.sweep),
+                         write.en.eq(access.erase)]
         m.d.comb += [
-            write.addr.eq(self.address),
-            write.en.eq(self.write),
-            write.data[0].eq(self.depth_in),
-            write.data[1].eq(self.color_in),
-            write.data[2].eq(self.color_in),
-            read.addr.eq(self.address),
-            # One port: a clock that writes does not read, and the data hold.
-            read.en.eq(self.read & ~self.write.any()),
-            self.depth.eq(read.data[0]),
-            self.color[0].eq(read.data[1]),
-            self.color[1].eq(read.data[2]),
+            read.addr.eq(address),
+            write.addr.eq(address),
+            access.write_busy.eq(access.scan),
+            access.read_busy.eq(access.scan | access.write),
+            access.sweep_busy.eq(access.scan | access.write | access.read),
         ]
+        for lane, written in enumerate((access.depth_in, access.color_in, access.color_in)):
+            # Whatever else is written with it, tag 0 erases.
+            m.d.comb += write.data[lane].eq(
+                Cat(Mux(access.write, written.tag, 0), written.value))
+        for lane, answer in enumerate((access.depth, *access.color)):
+            m.d.comb += answer.eq(read.data[lane])
         return m

@@ -8,7 +8,6 @@ from ..golden.activity import ACTIVITY_BITS
 from ..golden.configuration import MachineConfiguration
 from .activity import ElementActivity
 from .backplane import BroadcastLines, Connector
-from .clear import Clear
 from .depth_test import DepthTest
 from .fragment_stepper import FragmentStepper
 from .interlace import PixelAddress
@@ -34,7 +33,7 @@ class ProcessingElement(wiring.Component):
 
         broadcast ─▶ FIFO ─▶ control ─▶ SpanWalker ─▶ SpanStart ─▶ FragmentStepper ─▶ DepthTest
                                │                                                        │
-                               ├─▶ Survey, Clear, ReadBack ────────────────────────────▶┤
+                               ├─▶ Survey, ReadBack ───────────────────────────────────▶┤
                                ▼                                                        ▼
                          response link ◀── from the right                 lines to the right
 
@@ -84,7 +83,6 @@ class ProcessingElement(wiring.Component):
         m.submodules.stepper = stepper = FragmentStepper(configuration=configuration)
         m.submodules.depth_test = depth_test = self.depth_test
         m.submodules.survey = survey = Survey(configuration=configuration)
-        m.submodules.clear = clear = Clear(configuration=configuration)
         m.submodules.read_back = read_back = ReadBack(configuration=configuration)
         m.submodules.link = link = ResponseLink()
         m.submodules.picture = picture = PixelAddress(configuration=configuration)
@@ -112,7 +110,6 @@ class ProcessingElement(wiring.Component):
 
         # The domain: first unit from the lines, upper end from the survey.
         first, end = self.left.id, survey.end
-        body = control.operations.payload.body.clear
         domain = wires(m, "domain_wires")
         domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total)]
         for part in (walker, stepper, survey):
@@ -121,26 +118,20 @@ class ProcessingElement(wiring.Component):
             domain.d.comb += part.first.eq(first)
         for part in (walker, read_back, control):
             domain.d.comb += part.end.eq(end)
-        for part in (clear, read_back):
-            domain.d.comb += part.words.eq(picture.words)
+        domain.d.comb += read_back.words.eq(picture.words)
 
         # The services, and who has the memory lines.
         service = wires(m, "service_wires")
-        service.d.comb += [
-            clear.front.eq(body.front),
-            clear.color.eq(Cat(body.red, body.green, body.blue)),
-        ]
-        for name, part in (("survey", survey), ("clear", clear), ("read_back", read_back)):
+        for name, part in (("survey", survey), ("read_back", read_back)):
             service.d.comb += [
                 part.start.eq(getattr(control, f"{name}_start")),
                 getattr(control, f"{name}_done").eq(part.done),
             ]
         wiring.connect(service, read_back.depths, control.depths)
-        users = (survey, clear, read_back, depth_test)
+        users = (survey, read_back, depth_test)
         m.submodules.selector = selector = LineSelector(configuration=configuration,
                                                         sources=len(users))
-        service.d.comb += selector.select.eq(
-            Cat(control.surveying, control.clearing, control.reading))
+        service.d.comb += selector.select.eq(Cat(control.surveying, control.reading))
         lines = wires(m, "line_wires")
         for user, source in zip(users, selector.sources, strict=True):
             wiring.connect(lines, user.memory, source)
@@ -161,7 +152,7 @@ class ProcessingElement(wiring.Component):
         return m
 
     def _count(self, m, control, depth_test):
-        """Work since the frame start, whose clear also restarts the counts."""
+        """Work since the frame start."""
         fragments = Signal(COUNTER_BITS)
         busy_cycles = Signal(COUNTER_BITS)
         taken = depth_test.fragments.valid & depth_test.fragments.ready
@@ -169,7 +160,7 @@ class ProcessingElement(wiring.Component):
             fragments.eq(fragments + taken),
             busy_cycles.eq(busy_cycles + control.working),
         ]
-        with m.If(control.clear_start):
+        with m.If(control.frame_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]
         m.d.comb += [control.fragments.eq(fragments), control.busy_cycles.eq(busy_cycles)]
 

@@ -24,11 +24,13 @@ class ProcessingElementControl(wiring.Component):
     triangles: Out(stream of prepared triangles)
     drawing: In(1)
         The datapath behind ``triangles`` holds something.
-    survey_start, clear_start, read_back_start: Out(1)
-    survey_done, clear_done, read_back_done: In(1)
-        The three services; the operation's body holds at ``operations`` meanwhile.
-    surveying, clearing, reading: Out(1)
-        Who has the memory lines; the datapath when none is high.
+    survey_start, read_back_start: Out(1)
+    survey_done, read_back_done: In(1)
+        The two services.
+    surveying, reading: Out(1)
+        Who has the memory lines; the datapath when neither is high.
+    frame_start: Out(1)
+        Count from the next clock on.
     first, end: In(id_bits)
         The domain, for the report.
     depths: In(stream of depth words)
@@ -38,9 +40,9 @@ class ProcessingElementControl(wiring.Component):
     idle: Out(1)
         No operation here or in the datapath.
     working: Out(1)
-        Drawing or clearing: what counts as a busy cycle.
+        Drawing: what counts as a busy cycle.
 
-    Fuchs & Johnson, steps (a) to (d) after figure 12.
+    Fuchs & Johnson, the steps after figure 12.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -49,11 +51,11 @@ class ProcessingElementControl(wiring.Component):
             "operations": In(stream.Signature(broadcast_layout(configuration))),
             "triangles": Out(stream.Signature(prepared_triangle_layout(configuration))),
             "drawing": In(1),
-            **{f"{service}_{when}": flow(1) for service in ("survey", "clear", "read_back")
+            **{f"{service}_{when}": flow(1) for service in ("survey", "read_back")
                for when, flow in (("start", Out), ("done", In))},
             "surveying": Out(1),
-            "clearing": Out(1),
             "reading": Out(1),
+            "frame_start": Out(1),
             "first": In(configuration.id_bits),
             "end": In(configuration.id_bits),
             "depths": In(stream.Signature(configuration.depth_bits)),
@@ -99,9 +101,8 @@ class ProcessingElementControl(wiring.Component):
                     with m.Case(Operation.SURVEY):
                         m.d.comb += self.survey_start.eq(1)
                         m.next = "SURVEY"
-                    with m.Case(Operation.CLEAR):
-                        m.d.comb += self.clear_start.eq(1)
-                        m.next = "CLEAR"
+                    with m.Case(Operation.FRAME_START):
+                        m.d.comb += [self.frame_start.eq(1), operations.ready.eq(1)]
                     with m.Case(Operation.READ_DEPTH):
                         m.d.comb += self.read_back_start.eq(1)
                         m.next = "READ_BACK"
@@ -117,10 +118,6 @@ class ProcessingElementControl(wiring.Component):
                 units = Signal(16)
                 m.d.comb += units.eq(self.end - self.first)
                 report(ResponseKind.DOMAIN, Cat(units, self.first), finish)
-            with m.State("CLEAR"):
-                m.d.comb += [self.clearing.eq(1), self.working.eq(1)]
-                with m.If(self.clear_done):
-                    finish()
             with m.State("READ_BACK"):
                 m.d.comb += [
                     self.reading.eq(1),

@@ -5,7 +5,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .backplane import Lane, ProcessingElementLines
+from .backplane import ProcessingElementLines
 
 __all__ = ["Survey"]
 
@@ -58,7 +58,6 @@ class Survey(wiring.Component):
             memory.write.unit.eq(self.end),
             memory.read.unit.eq(self.end),
             memory.write.depth.eq(pattern),
-            memory.write.lanes.eq(Lane.DEPTH),
         ]
         with m.FSM():
             with m.State("IDLE"), m.If(self.start):

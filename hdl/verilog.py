@@ -61,7 +61,7 @@ module {name}(
   input read_enable,
   output reg [{data_top}:0] read_data
 );
-  reg [{data_top}:0] words [0:{last}];
+  {attribute}reg [{data_top}:0] words [0:{last}];
   always @(posedge clk) begin
 {writes}
     if (read_enable) read_data <= words[read_address];
@@ -87,10 +87,13 @@ class _VerilogPlatform:
         assert read.domain == write.domain == "sync" and not read.transparent_for
         width, lanes = Shape.cast(ram.shape).width, len(write.en)
         name = f"memory_{ram.depth}x{width}" + (f"_lanes_{lanes}" if lanes > 1 else "")
+        unchecked = "no_rw_check" in ram.attrs
+        name += "_no_rw_check" * unchecked
         address_width = max(1, len(write.addr))
         lane = width // lanes
         self.modules[name] = _MEMORY.format(
             name=name, depth=ram.depth, width=width, last=ram.depth - 1,
+            attribute="(* no_rw_check *) " * unchecked,
             address_top=address_width - 1, lane_top=lanes - 1, data_top=width - 1,
             writes="\n".join(
                 f"    if (write_enable[{index}]) words[write_address]"

@@ -74,6 +74,9 @@ _FURTHER_OPTIONS = (
                  "[default: what the size needs]"),
     click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
                  help="Clocks a pixel lasts on the video output.  [default: 2]"),
+    click.option("--memory-ports", type=click.IntRange(1, 2), metavar="1|2",
+                 help="Ports of each memory unit's RAM: one for all as in 1979, or one to read and "
+                 "one to write, as FPGAs have.  [default: 1]"),
     click.option("--setup", type=click.Choice(list(SETUPS)),
                  help="Who sets triangles up: the host, or the machine itself, with one divider "
                  "of each kind or a pipeline of them.  [default: host]"),

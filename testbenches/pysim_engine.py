@@ -62,8 +62,9 @@ class _Run:
     def _scramble(self, ctx) -> None:
         """Every memory word random, as after power-on."""
         source = random.Random(self.job.memory_seed)
-        for unit in self.machine.memory_units:
-            words = unit.memory.storage.data
+        for storage in (storage for unit in self.machine.memory_units
+                        for storage in unit.memory.storages):
+            words = storage.data
             width = Shape.cast(words.shape).width
             for address in range(words.depth):
                 ctx.set(words[address], words.shape.from_bits(source.getrandbits(width)))

@@ -57,9 +57,10 @@ class RenderJob:
         fragments = int(depth_complexity(listed, x_shift=interlace.x_shift,
                                          y_shift=interlace.y_shift).sum())
         boot = 100 + interlace.words
-        # Each word is cleared; then either memory or the broadcast of triangles is the bottleneck.
-        draw = 1.5 * interlace.words + max(
-            2.5 * fragments / configuration.processing_elements, 2.8 * listed.triangles)
+        # Either memory or the broadcast of triangles is the bottleneck.
+        clocks = 2.5 if configuration.memory_ports == 1 else 1.2
+        draw = max(clocks * fragments / configuration.processing_elements,
+                   2.8 * listed.triangles)
         scan = configuration.cycles_per_scan
         # The picture is shown from the scan after it is drawn, and that one is watched whole.
         return (int(boot + draw) // scan + 2) * scan

@@ -97,6 +97,8 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
         "edge_fraction_bits": configuration.edge_fraction_bits,
         "depth_plane_bits": configuration.depth_plane_bits,
         "fifo_depth": configuration.fifo_depth,
+        "memory_ports": configuration.memory_ports,
+        "tag_bits": configuration.tag_bits,
         "clocks_per_pixel": configuration.clocks_per_pixel,
         "cycles_per_scan": configuration.cycles_per_scan,
     }

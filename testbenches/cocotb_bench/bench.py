@@ -198,7 +198,7 @@ class _Bench:
                 if (self._owned.all() and self._booted is not None
                         and self.cycle >= self._clear_from):
                     raise ProtocolError(f"cycle {self.cycle}: pins: a colour is unknown after "
-                                            "the boot cleared the pictures")
+                                            "the boot made the pictures black")
                 color = 0
             self.monitor.sample(self.cycle, pins.active, pins.vertical_sync, color)
         return bool(pixel)

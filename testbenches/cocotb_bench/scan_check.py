@@ -49,7 +49,7 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
 def owned_pixels(configuration: MachineConfiguration) -> NDArray[np.bool_]:
     """(height, width), highest resolution: pixels whose memory unit has a processing element.
 
-    Nobody clears or draws the others.
+    Nobody draws the others.
     """
     interlace = configuration.interlace
     y, x = np.mgrid[:configuration.height, :configuration.width]

@@ -84,6 +84,44 @@ class Cage(Agent):
         return COUNTS * len(self.domains) if operation == Operation.READ_COUNTERS else []
 
 
+class Units(Agent):
+    """All memory units as one: passes that take ``words`` clocks, and what the lines show."""
+
+    def __init__(self, dut, words):
+        self.lines = dut.pictures
+        self.words = words
+        self.left = 0
+        self.clock = 0
+        self.initialised = []
+        self.passes = []
+        self.ended = []
+        self.tags = []  # depth, colours, in every clock
+        self.backgrounds = []
+
+    @property
+    def finished(self):
+        return self.left == 0
+
+    def drive(self, ctx):
+        ctx.set(self.lines.swept, self.left == 0)
+
+    def sample(self, ctx):
+        if self.left:
+            self.left -= 1
+            if self.left == 0:
+                self.ended.append(self.clock)
+        for line, log in ((self.lines.initialise, self.initialised),
+                          (self.lines.sweep, self.passes)):
+            if ctx.get(line):
+                assert self.left == 0
+                log.append(self.clock)
+                self.left = self.words
+        self.tags.append(tuple(ctx.get(tag) for tag in (self.lines.depth_tag,
+                                                        *self.lines.color_tag)))
+        self.backgrounds.append(ctx.get(self.lines.background))
+        self.clock += 1
+
+
 class Scans(Agent):
     """Pulses ``scan_start`` every ``period`` clocks, and looks at ``front`` around them."""
 
@@ -100,7 +138,7 @@ class Scans(Agent):
             self.starts.append(self.clock)
 
     def sample(self, ctx):
-        self.fronts.append(ctx.get(self.dut.front))
+        self.fronts.append(ctx.get(self.dut.pictures.front))
         self.clock += 1
 
     @property
@@ -111,7 +149,7 @@ class Scans(Agent):
 
 class Run:
     def __init__(self, configuration, words, responses, *, total=None, domains=((0, 1),),
-                 seed=None, work=0, period=50):
+                 seed=None, work=0, period=50, depth=20):
         self.dut = dut = CentralBroadcastController(configuration=configuration)
         total = configuration.units if total is None else total
         pause = (lambda end: no_pause) if seed is None else (lambda end: pauses(f"{end} {seed}"))
@@ -119,12 +157,14 @@ class Run:
         self.sink = Sink(dut.responses, responses, pause("out"))
         self.cage = Cage(dut, domains=domains, seed=seed, work=work)
         self.scans = Scans(dut, period)
+        self.units = Units(dut, depth)
 
         def lines(ctx, clock):
             ctx.set(dut.total, total)
             assert ctx.get(dut.right.id) == 0
 
-        simulate(dut, Drive(lines), self.source, self.sink, self.cage, self.scans, after=10)
+        simulate(dut, Drive(lines), self.source, self.sink, self.cage, self.scans, self.units,
+                 after=10)
 
     @property
     def responses(self):
@@ -174,15 +214,16 @@ def test_boot(name, seed):
     assert run.responses[:-1] == expected
     kind, cycles = run.responses[-1]
     assert kind == ResponseKind.BOOTED
-    # Clocks from reset until the pictures were clear, as far as the controller can tell.
-    cleared = run.cage.packets[1][0] + 1 + run.cage.idle[run.cage.packets[1][0] + 1:].index(True)
-    assert cleared <= cycles <= cleared + Cage.LATE
+    # Clocks from reset until the pictures were black.
+    [began], [ended] = run.units.initialised, run.units.ended
+    assert cycles == ended + 1 == began + 21
     assert cycles < run.sink.clocks[-2]
     if seed is None:
         assert cycles == run.sink.clocks[-2] - 1
-    assert [operation for _, operation, _ in run.cage.packets] == [
-        Operation.SURVEY, Operation.CLEAR]
-    assert run.fields(1) == (Operation.CLEAR, 1 << 24)  # black, the front picture, too
+    assert [operation for _, operation, _ in run.cage.packets] == [Operation.SURVEY]
+    assert run.cage.idle[began]  # the survey's words are gone
+    assert not run.units.passes and set(run.units.backgrounds) == {0}
+    assert set(run.units.tags) == {(1, 1, 1)}
     assert not run.source.taken
     assert not run.scans.swaps
 
@@ -199,7 +240,8 @@ def test_an_unsupported_number_of_units_is_refused_and_does_not_hang(total, seed
     assert run.responses == [(ResponseKind.DOMAIN, total),
                              (ResponseKind.UNITS, total << 16 | total),
                              *[fault] * (1 + len(words))]
-    # Nothing is drawn, nothing is cleared.
+    # Nothing is drawn, nothing is initialised.
+    assert not run.units.initialised
     assert [operation for _, operation, _ in run.cage.packets] == [Operation.SURVEY]
 
 
@@ -224,14 +266,15 @@ def test_frames(seed):
     """Packets in order; drawn when all are done, shown from the next scan's start on."""
     pick = random.Random(f"frames {seed}")
     configuration = small_machine("PM")
-    words, expected, packets = [], [], [Operation.SURVEY, Operation.CLEAR]
-    frames, bodies = 4, [0, 1 << 24]
+    words, expected, packets = [], [], [Operation.SURVEY]
+    frames, bodies, colors = 4, [None], []
     for frame in range(frames):
         color = tuple(pick.randrange(256) for _ in range(3))
         drawn = triangles(configuration, f"{seed} {frame}")
         words += [commands.frame_start(color), *drawn, commands.command(Opcode.FRAME_END)]
-        packets += [Operation.CLEAR] + [Operation.DRAW] * len(drawn)
-        bodies += [sum(value << 8 * place for place, value in enumerate(color))]
+        packets += [Operation.FRAME_START] + [Operation.DRAW] * len(drawn)
+        colors += [sum(value << 8 * place for place, value in enumerate(color))]
+        bodies += [None]
         bodies += [word >> commands.BODY_OFFSET for word in drawn]
         expected += [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
         if frame % 2:
@@ -243,7 +286,7 @@ def test_frames(seed):
               work=0 if seed is None else 30, period=40)
     assert [kind for kind, _ in run.responses[4:]] == expected
     assert [operation for _, operation, _ in run.cage.packets] == packets
-    for number, body in enumerate(bodies[2:], 2):
+    for number, body in enumerate(bodies):
         if body is not None:
             assert run.fields(number)[1] == body
 
@@ -258,6 +301,17 @@ def test_frames(seed):
         # Only at a scan's start, the first one after the report of the finished picture.
         assert swap == min(clock for clock in run.scans.starts if clock > drawn)
         assert shown > swap
+        # From then on its background is shown, and that of no picture before its swap.
+        assert run.units.backgrounds[swap + 1] == colors[frame]
+        assert run.units.backgrounds[swap] == ([0, *colors])[frame]
+        # It got a tag of its own when it started.
+        [start] = [clock for clock, operation, _ in run.cage.packets
+                   if operation == Operation.FRAME_START and began < clock < drawn]
+        assert run.cage.idle[start] and (start == began + 1 or seed is not None)
+        (depth, *color), before = run.units.tags[start + 1], run.units.tags[start]
+        back = 1 - run.scans.fronts[start]
+        assert color[back] == depth not in (0, *before)
+        assert color[1 - back] == before[2 - back]
         # No packet of this frame is still at work when it is drawn, nor follows before the swap.
         assert run.cage.idle[drawn]
         assert not any(drawn < clock <= swap for clock, _, _ in run.cage.packets)
@@ -280,6 +334,45 @@ def test_a_picture_that_takes_longer_than_a_scan_is_shown_late():
     shown = dict(run.responses)[ResponseKind.FRAME_SHOWN]
     assert shown > 2
     assert len(run.scans.swaps) == 1
+
+
+@pytest.mark.parametrize("words", [5, 400])
+@pytest.mark.parametrize("tag_bits", [2, 3])
+def test_a_frame_start_waits_for_a_tag_that_no_word_has(tag_bits, words):
+    """With passes that are quick, and with some that take longer than a frame; the wait counts."""
+    configuration = small_machine("PM", tag_bits=tag_bits)
+    frames = 3 << tag_bits
+    run = Run(configuration, [commands.frame_start((number, 0, 0)) for number in range(frames)]
+              + [commands.command(Opcode.FRAME_END)], 6, depth=words)
+    starts = [clock for clock, operation, _ in run.cage.packets
+              if operation == Operation.FRAME_START]
+    assert len(starts) == frames
+    held = {1}
+    for clock in range(starts[0], starts[-1] + 1):
+        if clock in run.units.passes:
+            stale = held - set(run.units.tags[clock])
+        if clock in run.units.ended:
+            held -= stale
+        if clock in starts:
+            tag = run.units.tags[clock + 1][0]
+            assert tag not in held
+            held.add(tag)
+    # The front's tag is never used again, the others are if need be.
+    used = {run.units.tags[clock + 1][0] for clock in starts}
+    assert 1 not in used and (len(used) == (1 << tag_bits) - 2 or words == 5)
+    waits = [start - taken - 1 for start, taken in zip(starts, run.source.taken, strict=False)]
+    assert max(waits) > words / 2 if words == 400 else max(waits) < 20
+    drawn = dict(run.responses)[ResponseKind.FRAME_DRAWN]
+    assert drawn <= waits[-1] + 8
+
+
+def test_an_empty_frame_takes_as_long_whatever_the_memory_holds():
+    frames = [commands.frame_start((1, 2, 3)), commands.command(Opcode.FRAME_END)]
+    took = {words: [value for kind, value in
+                    Run(small_machine("PM"), frames * 3, 4 + 6, depth=words).responses
+                    if kind == ResponseKind.FRAME_DRAWN] for words in (1, 5, 20)}
+    assert took[1] == took[5] == took[20]
+    assert max(took[1]) <= 6
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -307,7 +400,7 @@ def test_scans_are_counted_from_the_frame_start_on(delay):
     source, sink = Source(dut.commands, words, lambda: next(waits)), Sink(dut.responses, 6)
     scans = Scans(dut, 10)
     simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, 1)), source, sink,
-             Cage(dut, domains=[(0, 1)]), scans, after=2)
+             Cage(dut, domains=[(0, 1)]), Units(dut, 5), scans, after=2)
     (swap,) = scans.swaps
     assert sink.items[-1].value == sum(source.taken[0] <= clock < swap for clock in scans.starts)
     assert sink.items[-1].value > 0
@@ -319,7 +412,7 @@ def test_vertices_are_prepared_and_everything_keeps_its_order(seed, interval):
     """Triangles with and without set-up mixed; commands after them find them announced."""
     configuration = small_machine("PM", setup="hardware", setup_interval=interval)
     pick = random.Random(f"mixed {seed}")
-    words, bodies = [commands.frame_start((1, 2, 3))], [(Operation.CLEAR, 1 | 2 << 8 | 3 << 16)]
+    words, bodies = [commands.frame_start((1, 2, 3))], [(Operation.FRAME_START, None)]
     for part in range(6):
         scene = random_triangles(f"{seed} {part}", pick.randrange(1, 6), width=8, height=8)
         prepared = commands.prepared_triangles(configuration, prepare(configuration, scene))
@@ -331,7 +424,7 @@ def test_vertices_are_prepared_and_everything_keeps_its_order(seed, interval):
     words.append(commands.command(Opcode.FRAME_END))
     run = Run(configuration, words, 4 + len(COUNTS) + 2, seed=seed,
               work=0 if seed is None else 20)
-    found = [run.fields(number) for number in range(2, len(run.cage.packets))]
+    found = [run.fields(number) for number in range(1, len(run.cage.packets))]
     assert len(found) == len(bodies)
     for (operation, body), (expected_operation, expected) in zip(found, bodies, strict=True):
         assert operation == expected_operation
@@ -357,7 +450,7 @@ def test_latency_and_throughput():
     dut = CentralBroadcastController(configuration=configuration)
     cage, source = Wide(dut, domains=[(0, 1)]), Source(dut.commands, words)
     simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, 1)), source,
-             Sink(dut.responses, 4), cage)
+             Sink(dut.responses, 4), cage, Units(dut, 5))
     clocks = [clock for clock, operation, _ in cage.packets if operation == Operation.DRAW]
     assert clocks == source.taken
     assert clocks == list(range(clocks[0], clocks[0] + len(words)))

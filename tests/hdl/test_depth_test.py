@@ -8,7 +8,6 @@ from hdl_bench.memory import MemoryLines
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Source, no_pause, pauses
 
-from cardcage.hdl.backplane import Lane
 from cardcage.hdl.depth_test import DepthTest
 
 CONFIGURATION = small_machine("PMMMM", 8, 8)
@@ -27,11 +26,11 @@ def random_fragments(seed, count, *, units, places, depths):
             for number in range(1, count + 1)]
 
 
-def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None):
+def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None, ports=1):
     """Returns the bench's parts, and the fragments that had to be written, in order."""
     dut = DepthTest(configuration=CONFIGURATION)
     memory = MemoryLines(dut.memory, first=0, end=units, words=WORDS,
-                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan)
+                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan, ports=ports)
     if background is not None:
         memory.depth = dict.fromkeys(memory.depth, background)
     depth, color, winners = dict(memory.depth), dict(memory.back), []
@@ -41,19 +40,16 @@ def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None):
             depth[place], color[place] = item["depth"], item["color"]
             winners.append(place)
     source = Source(dut.fragments, fragments, pause)
-    front = dict(memory.front)
     forwarded, busy = [], []
 
     def look(ctx, clock):
         forwarded.append(ctx.get(dut.forwarded))
         busy.append(ctx.get(dut.busy))
 
-    simulate(dut, source, memory, Watch(look), after=8)
+    simulate(dut, source, memory, Watch(look), after=40)
     assert memory.depth == depth
     assert memory.back == color
-    assert memory.front == front
-    assert [write[1:3] for write in memory.writes] == winners
-    assert {write[3] for write in memory.writes} <= {Lane.DEPTH | Lane.BACK}
+    assert [write[1:] for write in memory.writes] == winners
     assert [read[1:] for read in memory.reads] == [(item["unit"], item["address"])
                                                   for item in fragments]
     assert [read[0] for read in memory.reads] == source.taken
@@ -65,13 +61,14 @@ def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None):
     return source, memory, sum(forwarded)
 
 
-@pytest.mark.parametrize("scan", [0.0, 0.3, 0.8])
+@pytest.mark.parametrize(("scan", "ports"), [(0.0, 1), (0.3, 1), (0.8, 1), (0.0, 2)])
 @pytest.mark.parametrize("units", [1, 2, 4])
 @pytest.mark.parametrize("seed", range(2))
-def test_random_fragments(seed, units, scan):
+def test_random_fragments(seed, units, scan, ports):
     fragments = random_fragments(f"{seed} {units} {scan}", 250, units=units, places=2 * units,
                                  depths=256)
-    _, memory, _ = run(fragments, units=units, pause=pauses(seed), scan=scan, seed=seed)
+    _, memory, _ = run(fragments, units=units, pause=pauses(seed), scan=scan, seed=seed,
+                       ports=ports)
     assert memory.writes
 
 
@@ -90,6 +87,39 @@ def test_one_pixel_in_consecutive_clocks(seed, scan):
     fragments += [fragment(0, 0, depth, depth + 1) for depth in reversed(range(20))]
     _, _, forwarded = run(fragments, units=1, seed=seed, scan=scan, background=255)
     assert forwarded > 0
+
+
+@pytest.mark.parametrize("gap", range(1, 7))
+@pytest.mark.parametrize("between", [None, 0, 1])
+@pytest.mark.parametrize("ports", [1, 2])
+def test_the_same_pixel_after_every_number_of_clocks(gap, between, ports):
+    """On one pixel and two, ever nearer or farther: with two ports also in the very clock in which
+    the winner is written, while another one follows it."""
+    fragments = []
+    for step in range(30):
+        depth = 250 - 8 * step if step < 20 else 8 * step
+        fragments.append(fragment(0, 3, depth, 2 * step + 1))
+        # In the clocks between nothing, hidden fragments or winners of other pixels.
+        for place in range(gap - 1):
+            other = 250 - 4 * step - place if between else 254
+            fragments.append(None if between is None else
+                             fragment(0, 4 + (place + step) % 2, other, 0x10000 + step))
+    waits = [0]
+    for item in fragments:
+        if item is None:
+            waits[-1] += 1
+        else:
+            waits.append(0)
+    run([item for item in fragments if item is not None], units=1, background=253,
+        pause=iter(waits).__next__, ports=ports)
+
+
+def test_with_two_ports_one_unit_takes_a_visible_fragment_a_clock():
+    fragments = [fragment(0, index, 5, index) for index in range(WORDS)]
+    source, memory, _ = run(fragments, units=1, background=255, ports=2)
+    assert source.taken == list(range(WORDS))
+    assert [write[0] for write in memory.writes] == [clock + DepthTest.latency
+                                                     for clock in source.taken]
 
 
 def test_ties_keep_the_first():

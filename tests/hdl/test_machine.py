@@ -64,12 +64,19 @@ def test_wires(order):
                     generator = machine.scan_generator.scan
                     assert ctx.get(getattr(card.scan, name).as_value()) == ctx.get(
                         getattr(generator, name).as_value())
-                assert ctx.get(card.front) == ctx.get(machine.controller.front)
+                for name in ("front", "depth_tag", "background", "initialise", "sweep"):
+                    assert ctx.get(getattr(card.pictures, name)) == ctx.get(
+                        getattr(machine.controller.pictures, name))
+                for place in range(2):
+                    assert ctx.get(card.pictures.color_tag[place]) == ctx.get(
+                        machine.controller.pictures.color_tag[place])
         assert ctx.get(machine.controller.total) == number == configuration.units
         ready, done = ([ctx.get(getattr(element.broadcast, name))
                         for element in machine.processing_elements] for name in ("ready", "done"))
         assert ctx.get(machine.controller.broadcast.ready) == all(ready)
         assert ctx.get(machine.controller.broadcast.done) == all(done)
+        assert ctx.get(machine.controller.pictures.swept) == all(
+            ctx.get(unit.pictures.swept) for unit in machine.memory_units)
         for element in machine.processing_elements:
             assert ctx.get(element.broadcast.strobe) == ctx.get(machine.controller.broadcast.strobe)
         checked.append(lines != nothing)

@@ -21,14 +21,9 @@ from cardcage.hdl.layouts import Operation
 from cardcage.hdl.processing_element import ProcessingElement
 
 SURVEY = {"operation": Operation.SURVEY}
+FRAME_START = {"operation": Operation.FRAME_START}
 READ_DEPTH = {"operation": Operation.READ_DEPTH}
 READ_COUNTERS = {"operation": Operation.READ_COUNTERS}
-
-
-def clear(background, front=0):
-    red, green, blue = background
-    return {"operation": Operation.CLEAR,
-            "body": {"clear": {"red": red, "green": green, "blue": blue, "front": front}}}
 
 
 def draw(values):
@@ -38,11 +33,13 @@ def draw(values):
 class Announcer(Agent):
     """Strobes packets while the card is ready; waits for its done where there is ``None``.
 
-    As the controller does, it looks at done some clocks after a strobe only.
+    As the controller does, it looks at done some clocks after a strobe only, and starts a frame
+    in ``memory`` when all is done.
     """
 
-    def __init__(self, dut, packets, pause=lambda: 0):
+    def __init__(self, dut, memory, packets, pause=lambda: 0):
         self.dut = dut
+        self.memory = memory
         self.packets = list(packets)
         self.pause = pause
         self.wait = 0
@@ -62,6 +59,9 @@ class Announcer(Agent):
             self.wait = max(0, self.wait - 1)
             return
         if self.packets[0] is not None and ctx.get(lines.ready):
+            if self.packets[0] == FRAME_START:
+                assert ctx.get(lines.done)
+                self.memory.start_frame()
             ctx.set(lines.packet, self.packets.pop(0))
             ctx.set(lines.strobe, 1)
             self.strobes.append(self.clock)
@@ -89,7 +89,7 @@ class Bench:
         self.memory = MemoryLines(dut.right.lines, first=first, end=end,
                                   words=configuration.words, seed=seed, scan=scan,
                                   depth_bits=configuration.depth_bits)
-        self.announcer = Announcer(dut, packets, pause)
+        self.announcer = Announcer(dut, self.memory, packets, pause)
         self.sink = Sink(dut.left.response, responses + len(right), pause)
         self.source = Source(dut.right.response, right, pause)
 
@@ -133,11 +133,11 @@ def test_boot_two_frames_and_their_reports(machine, seed):
         for scene in lists for x_shift, y_shift in ((0, 0), (0, 1), (1, 1)))
     configuration = small_machine(cards, shading=shading, fraction_bits=fraction_bits, **changes)
     interlace = configuration.interlace
-    packets = [SURVEY, None, clear((1, 2, 3), front=1), None]
+    packets = [SURVEY, None]
     expected = [(ResponseKind.DOMAIN, first << 16 | end - first)]
     words = range(interlace.words)
     for scene in lists:
-        packets += [clear(scene.background)]
+        packets += [FRAME_START]
         packets += [draw(values) for values in
                     prepared_values(configuration, prepare(configuration, scene))]
         packets += [None, READ_DEPTH, None, READ_COUNTERS, None]
@@ -154,35 +154,31 @@ def test_boot_two_frames_and_their_reports(machine, seed):
         assert kind == wanted
         assert number is None or value == number, kind
     busy = [value for kind, value in bench.responses if kind == ResponseKind.BUSY]
-    # A clear takes a clock a word, and a fragment one or more.
+    # A fragment takes a clock or more.
     counts = [value for kind, value in bench.responses if kind == ResponseKind.FRAGMENTS]
-    assert all(cycles >= interlace.words + count
-               for cycles, count in zip(busy, counts, strict=True))
+    assert all(cycles >= count for cycles, count in zip(busy, counts, strict=True))
     assert all(count > 5 for count in counts)
     back = {place: color for place, color in bench.memory.back.items() if place[1] in words}
-    background = sum(value << 8 * place for place, value in enumerate(lists[1].background))
-    assert back == {(unit, address): drawn.get(interlace.pixel(unit, address),
-                                               (0, background))[1]
+    assert back == {(unit, address): drawn.get(interlace.pixel(unit, address), (0, None))[1]
                     for unit in range(first, end) for address in words}
-    assert {color for place, color in bench.memory.front.items() if place[1] in words} == {
-        0x030201}
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_operations_wait_for_those_before(seed):
-    """Nothing announced waits for done: each word read is as the operations before left it."""
+    """But for a frame start nothing announced waits for done: each word read is as the operations
+    before left it."""
     pick = random.Random(f"order {seed}")
     configuration = small_machine("PMM", 4, 4)
     interlace = configuration.interlace
     packets, expected = [SURVEY], [(ResponseKind.DOMAIN, 2)]
     background = (1 << configuration.depth_bits) - 1
-    depth, fragments, cleared = None, 0, False
+    depth, fragments = None, 0
     for _ in range(25):
-        kind = pick.choice(("clear", "draw", "draw", "read", "count")) if cleared else "clear"
-        if kind == "clear":
-            cleared, fragments = True, 0
+        kind = pick.choice(("start", "draw", "draw", "read", "count")) if depth else "start"
+        if kind == "start":
+            fragments = 0
             depth = {(x, y): background for y in range(4) for x in range(4)}
-            packets.append(clear((7, 7, 7)))
+            packets += [None, FRAME_START]
         elif kind == "draw":
             left, top = pick.randrange(4), pick.randrange(4)
             right, bottom = pick.randrange(left + 1, 5), pick.randrange(top + 1, 5)
@@ -211,7 +207,7 @@ def test_operations_wait_for_those_before(seed):
 def test_an_empty_domain_reports_none_and_is_done():
     configuration = small_machine("PPM")
     scene = random_triangles(3, 10, width=8, height=8, flat=True)
-    packets = [SURVEY, None, clear((0, 0, 0)),
+    packets = [SURVEY, None, FRAME_START,
                *(draw(values) for values in
                  prepared_values(configuration, prepare(configuration, scene))),
                None, READ_DEPTH, None, READ_COUNTERS, None]
@@ -264,7 +260,7 @@ def test_throughput_is_a_fragment_a_clock_in_long_rows():
     hidden = rectangle(configuration, 0, 0, 16, 8)
     hidden["planes"]["depth"]["start"] = 255 << configuration.fraction_bits
     near = rectangle(configuration, 0, 0, 16, 8)
-    packets = [SURVEY, None, clear((0, 0, 0)), None, draw(near), None, *[draw(hidden)] * 4, None]
+    packets = [SURVEY, None, FRAME_START, None, draw(near), None, *[draw(hidden)] * 4, None]
     bench = Bench(configuration, 0, 1, packets, responses=1)
     reads = [read[0] for read in bench.memory.reads[2 + 128:]]
     assert len(reads) == 4 * 128
@@ -275,7 +271,7 @@ def test_the_fifo_holds_what_it_says():
     """While a long triangle is drawn, ``fifo_depth`` packets and no more are taken."""
     for depth in (2, 5):
         configuration = small_machine("PM", 16, 8, fifo_depth=depth)
-        packets = [SURVEY, None, clear((0, 0, 0)), None,
+        packets = [SURVEY, None, FRAME_START, None,
                    *[draw(rectangle(configuration, 0, 0, 16, 8))] * (depth + 3), None]
         bench = Bench(configuration, 0, 1, packets, responses=1)
         strobes = bench.announcer.strobes[2:]
@@ -288,7 +284,7 @@ def test_the_fifo_holds_what_it_says():
 def test_done_is_low_until_everything_is_written_and_sent(seed):
     pick = random.Random(f"done {seed}")
     configuration = small_machine("PMM")
-    packets = [SURVEY, None, clear((9, 9, 9)), None]
+    packets = [SURVEY, None, FRAME_START, None]
     for _ in range(6):
         corner = pick.randrange(7), pick.randrange(7)
         packets += [draw(rectangle(configuration, *corner, corner[0] + 1, corner[1] + 1)), None]
@@ -311,7 +307,7 @@ def test_done_is_low_until_everything_is_written_and_sent(seed):
 def test_throughput_of_visible_fragments(cards, end, clocks):
     """Every fragment visible, as in the worst case for writes: clocks for each."""
     configuration = small_machine(cards, 16, 8)
-    packets = [SURVEY, None, clear((0, 0, 0)), None,
+    packets = [SURVEY, None, FRAME_START, None,
                draw(rectangle(configuration, 0, 0, 16, 8)), None]
     bench = Bench(configuration, 0, end, packets, responses=1)
     reads = [read[0] for read in bench.memory.reads if read[0] > bench.announcer.dones[1]]

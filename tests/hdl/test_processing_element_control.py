@@ -13,7 +13,7 @@ from cardcage.hdl.layouts import Operation
 from cardcage.hdl.processing_element_control import ProcessingElementControl
 
 CONFIGURATION = small_machine("PMMMM")
-SERVICES = {"survey": "surveying", "clear": "clearing", "read_back": "reading"}
+SERVICES = {"survey": "surveying", "read_back": "reading"}
 FIRST, END, FRAGMENTS, BUSY = 1, 4, 0x89ABCDEF, 0x01234567
 DEPTHS = [17, 0, 255, 128, 3]
 UNKNOWN = 7
@@ -44,7 +44,7 @@ class Datapath(Agent):
 
 
 class Parts(Agent):
-    """The three services: each takes its time; the reader sends depths meanwhile."""
+    """The two services: each takes its time; the reader sends depths meanwhile."""
 
     def __init__(self, dut, time):
         self.dut = dut
@@ -104,7 +104,7 @@ RESPONSES = {
     Operation.READ_DEPTH: [(ResponseKind.DEPTH, depth) for depth in DEPTHS],
     Operation.READ_COUNTERS: [(ResponseKind.FRAGMENTS, FRAGMENTS), (ResponseKind.BUSY, BUSY)],
 }
-STARTS = {Operation.SURVEY: "survey", Operation.CLEAR: "clear", Operation.READ_DEPTH: "read_back"}
+STARTS = {Operation.SURVEY: "survey", Operation.READ_DEPTH: "read_back"}
 
 
 def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
@@ -116,6 +116,7 @@ def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
     triangles = Sink(dut.triangles, len(draws), pause[1])
     responses = Sink(dut.responses, len(answers), pause[2])
     datapath, parts = Datapath(dut, triangles, hold), Parts(dut, time)
+    frame_starts = []
 
     def watch(ctx, clock):
         for name, value in (("first", FIRST), ("end", END), ("fragments", FRAGMENTS),
@@ -127,9 +128,10 @@ def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
             assert ctx.get(dut.idle)
         if drawing or waiting or parts.running:
             assert not ctx.get(dut.idle)
-        working = ctx.get(dut.working)
-        assert working == bool(drawing or ctx.get(dut.triangles.valid)
-                               or parts.running == "clear")
+        assert ctx.get(dut.working) == bool(drawing or ctx.get(dut.triangles.valid))
+        if ctx.get(dut.frame_start):
+            assert not drawing
+            frame_starts.append(clock)
 
     # The watch looks before the parts move on.
     simulate(dut, Watch(watch), source, triangles, responses, datapath, parts, after=8)
@@ -142,6 +144,8 @@ def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
     assert [name for _, name in parts.log] == [STARTS[kind] for kind in kinds if kind in STARTS]
     for clock, _ in parts.log:
         assert not datapath.drawing[clock]
+    assert frame_starts == [clock for clock, kind in zip(source.taken, kinds, strict=True)
+                            if kind == Operation.FRAME_START]
     return source, triangles, responses, datapath, parts
 
 
@@ -165,6 +169,11 @@ def test_others_begin_when_the_datapath_is_empty(kind):
     empty = 1 + max(clock for clock, drawing in enumerate(datapath.drawing) if drawing)
     # Started in the first clock without a triangle; the lines are the service's from the next on.
     assert parts.log == [(empty, STARTS[kind])]
+
+
+def test_a_frame_start_takes_a_clock():
+    source, *_ = run([Operation.FRAME_START, Operation.DRAW])
+    assert source.taken == [0, 1]
 
 
 def test_counters_follow_when_the_datapath_is_empty():

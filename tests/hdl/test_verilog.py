@@ -138,8 +138,8 @@ def test_description(texts):
     assert facts["memories"] == [
         {"module": "memory_15x1062", "words": 15, "bits": 1062, "instances": 4,
          "contents_at_power_on": "unknown"},
-        {"module": "memory_16384x72_lanes_3", "words": 16384, "bits": 72, "instances": 16,
-         "contents_at_power_on": "unknown"}]
+        {"module": "memory_16384x84_lanes_3_no_rw_check", "words": 16384, "bits": 84,
+         "instances": 16, "contents_at_power_on": "unknown"}]
     assert facts["timing"]["video_scan_generator"]["latency_clocks"] == 4
     assert all(timing["stated"] for timing in facts["timing"].values())
     [triangle] = [entry for entry in facts["commands"]["opcodes"]

@@ -48,6 +48,10 @@ def probe(monkeypatch):
     return probe
 
 
+#: A row of eight pixels apart from that one; while it is drawn the next ones close up behind it.
+ROW = [[0.1, 5.4], [0.1, 5.6], [8.2, 5.5]]
+
+
 @pytest.mark.parametrize("order", ["front to back", "back to front", "shuffled"])
 def test_no_update_is_lost_on_one_pixel(probe, order):
     source = np.random.default_rng(4)
@@ -56,7 +60,10 @@ def test_no_update_is_lost_on_one_pixel(probe, order):
         depth = depth[::-1]
     elif order == "shuffled":
         source.shuffle(depth)
-    display_list = triangles([PIXEL] * 60, np.repeat(depth, 3), source.integers(0, 256, (60, 3, 3)))
+    rows = np.arange(4000, 4000 - 15, -1)  # each of them visible
+    depth_of = np.concatenate([rows[:, np.newaxis], depth.reshape(15, 4)], axis=1).ravel()
+    display_list = triangles([ROW, *[PIXEL] * 4] * 15, np.repeat(depth_of, 3),
+                             source.integers(0, 256, (75, 3, 3)))
     configuration = configure(display_list, cards="PM", clocks_per_pixel=4)
     simulation = simulate(configuration, display_list, pysim_engine.PysimEngine(), memory_seed=1)
     check(configuration, display_list, simulation)

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cardcage.golden import bit_true, exact
-from cardcage.golden.commands import ResponseKind
+from cardcage.golden import bit_true, commands, exact
+from cardcage.golden.commands import Opcode, ResponseKind
 from cardcage.golden.configuration import configure
 from cardcage.golden.display_list import DisplayList
 from cardcage.testbenches.engine import Job
@@ -13,6 +13,7 @@ from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import expected_video, frame_commands, simulate
 
 BACKGROUND = (12, 34, 56)
+SCREEN = [[4, -16], [15.9, 8.5], [-15, 8.5]]  # covers all of 8 by 8 pixels
 PIXEL = [[2.1, 3.1], [3.4, 3.1], [2.1, 4.4]]  # covers the centre of pixel (2, 3) alone
 
 
@@ -113,6 +114,88 @@ def check_scans():
     assert changes in (["dark", "quick", "slow", "quick"], ["quick", "slow", "quick"])
     assert seen[seen.index("quick"):seen.index("slow")] == ["quick"] * (1 + repeated[1])
     return repeated
+
+
+def spans_twice(width=8, height=8, seed=0):
+    """Rows of one to six pixels, each drawn twice in a row: the second time farther, or nearer.
+
+    Whatever the pace, some pixel is drawn again in the clock in which it is written, and the one
+    beside it was written since.
+    """
+    source = np.random.default_rng(seed)
+    position, depth = [], []
+    for row in range(height):
+        for length in range(1, 7):
+            left = int(source.integers(0, width - length + 1))
+            wedge = [[left + 0.1, row + 0.4], [left + 0.1, row + 0.6],
+                     [left + length + 0.2, row + 0.5]]
+            near = 500 * length  # so that what shorter rows left can still be seen
+            position += [wedge] * 2
+            depth += [[near] * 3, [near + int(source.choice([100, 100, -100]))] * 3]
+    return triangles(position, depth, source.integers(0, 256, (len(depth), 3, 3)), width=width,
+                     height=height)
+
+
+def check_frames(lists, *, cards="PM", seed=1, abandoned=(), engine=None, **options):
+    """Draw many frames one after the other, from random memory, and check every pixel of each.
+
+    Of the frames in ``abandoned`` the host sends all but the end: the next one starts over them.
+    Returns (kind, value, cycle) of all responses.
+    """
+    options.setdefault("clocks_per_pixel", 2)
+    configurations = [configure(listed, cards=cards, shading="gouraud", **options)
+                      for listed in lists]
+    configuration = max(configurations, key=lambda machine: machine.fraction_bits)
+    interlace = configuration.interlace
+    words, finished = [], []
+    for number, listed in enumerate(lists):
+        commands_of_frame = frame_commands(configuration, listed)
+        if number in abandoned:
+            words += commands_of_frame[:-1]
+        else:
+            words += [*commands_of_frame, commands.command(Opcode.READ_DEPTH)]
+            finished.append(listed)
+    depths = configuration.units * interlace.words
+    job = Job(configuration, commands=words, memory_seed=seed,
+              responses=configuration.processing_elements + 3 + len(finished) * (2 + depths),
+              maximum_cycles=len(lists) * 40 * configuration.cycles_per_scan)
+    run = (engine or PysimEngine()).run(job)
+    pictures = [golden_picture(configuration, listed) for listed in finished]
+
+    read = [value for kind, value, _ in run.responses if kind == ResponseKind.DEPTH]
+    unit, address = np.meshgrid(np.arange(configuration.units), np.arange(interlace.words),
+                                indexing="ij")
+    x, y = interlace.pixel(unit, address)
+    inside = (x < interlace.width) & (y < interlace.height)
+    for number, picture in enumerate(pictures):
+        words_read = np.array(read[number * depths:][:depths]).reshape(unit.shape)
+        wrong = np.argwhere(words_read[inside] != picture.depth[y[inside], x[inside]])
+        assert not len(wrong), f"frame {number}: {len(wrong)} depths differ"
+
+    # Each scan shows one picture whole, the one that was swapped in last.
+    videos = [expected_video(configuration, picture.color) for picture in pictures]
+    shown = [cycle for kind, _, cycle in run.responses if kind == ResponseKind.FRAME_SHOWN]
+    seen = set()
+    for scan in run.scans:
+        number = sum(cycle < scan.cycle for cycle in shown) - 1
+        if number < 0:  # the boot's pictures, black once it is over
+            continue
+        wrong = np.argwhere((scan.picture != videos[number]).any(axis=-1))
+        assert not len(wrong), f"frame {number}: {len(wrong)} colours differ, cycle {scan.cycle}"
+        seen.add(number)
+    assert seen == set(range(len(pictures)))
+    return run.responses
+
+
+def many_frames(count, seed=0):
+    """Lists of every kind, in turn: quick, empty, all pixels visible several times, one pixel."""
+    kinds = (lambda n: random_list((seed, n), 4),
+             lambda n: triangles([], [], [], background=(n,) * 3),
+             lambda n: triangles([SCREEN] * 4,
+                                 [[800 - 99 * n % 700 - layer] * 3 for layer in range(4)],
+                                 [[[n, 7 * n % 256, layer]] * 3 for layer in range(4)]),
+             lambda n: triangles([PIXEL], [[n] * 3], [[[n, 255 - n, 9]] * 3], background=(1, n, 2)))
+    return [kinds[number % len(kinds)](number) for number in range(count)]
 
 
 def check_bit_true(configuration, display_list, simulation):

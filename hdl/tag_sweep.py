@@ -1,0 +1,106 @@
+"""Visits the words of a memory unit in idle clocks and takes old tags out."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import MachineConfiguration
+
+__all__ = ["TagSweep"]
+
+
+class TagSweep(wiring.Component):
+    """A pass over every word, in clocks in which nobody else asks for the RAM.
+
+    A pass reads each word and writes tag 0 to the lanes that are stale.  What the
+    processing element writes there between the two is not stale any more, and is
+    left alone.  So, after a pass: no lane of any word has a tag that was not the
+    lane's current one at any time since the pass began.
+
+    Proof: take such a tag.  From the beginning of the pass nothing writes it,
+    since only current tags are written.  Each lane of each word is read once; if
+    it has the tag then, it is stale, and is erased unless it is written before:
+    with a current tag.
+
+    The pass that follows ``initialise`` erases every lane without a look: what is
+    there after power-on is not known.  Fuchs & Johnson have the processing
+    elements do that (step (c) after figure 12); here units that have none are
+    background as well, and no element carries the logic for it.
+
+    Latency: at most five clocks a word while only the scan asks, which takes every
+    other clock at most: read 2, check 1, erase 2.  ``initialise``: one, and two.
+
+    Members
+    -------
+    start, initialise: In(1)
+        Begin a pass of either kind; only while ``idle``.
+    idle: Out(1)
+        No pass goes on.
+    address: Out(address_bits)
+        The word visited.
+    sweep: Out(1)
+        Asks for a read of the word.
+    erase: Out(3)
+        Asks for tag 0 in these lanes.
+    busy: In(1)
+        What is asked for does not take place in this clock.
+    stale: In(3)
+        In the clock after a read: lanes of that word whose tag is neither current nor 0.
+    overwritten: In(3)
+        Lanes of the word visited that the processing element writes in this clock.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "start": In(1),
+            "initialise": In(1),
+            "idle": Out(1),
+            "address": Out(configuration.address_bits),
+            "sweep": Out(1),
+            "erase": Out(3),
+            "busy": In(1),
+            "stale": In(3),
+            "overwritten": In(3),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        left = Signal(3)  # lanes still to erase
+        everything = Signal()
+
+        def step():
+            m.d.sync += [self.address.eq(self.address + 1), left.eq(0b111)]
+            with m.If(self.address == self.configuration.words - 1):
+                m.d.sync += self.address.eq(0)
+                m.next = "IDLE"
+            with m.Elif(everything):
+                m.next = "ERASE"
+            with m.Else():
+                m.next = "READ"
+
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.comb += self.idle.eq(1)
+                m.d.sync += [everything.eq(self.initialise), left.eq(0b111)]
+                with m.If(self.initialise):
+                    m.next = "ERASE"
+                with m.Elif(self.start):
+                    m.next = "READ"
+            with m.State("READ"):
+                m.d.comb += self.sweep.eq(1)
+                with m.If(~self.busy):
+                    m.next = "CHECK"
+            with m.State("CHECK"):
+                found = self.stale & ~self.overwritten
+                m.d.sync += left.eq(found)
+                with m.If(found.any()):
+                    m.next = "ERASE"
+                with m.Else():
+                    step()
+            with m.State("ERASE"):
+                m.d.comb += self.erase.eq(left)
+                m.d.sync += left.eq(left & ~self.overwritten)
+                with m.If(~self.busy):
+                    step()
+        return m

@@ -1,0 +1,87 @@
+"""The RAM of a memory unit as an FPGA has it: each lane one port to read and one to write."""
+
+from amaranth.hdl import *
+from amaranth.lib import memory, wiring
+from amaranth.lib.wiring import In
+
+from .memory_access import MemoryAccess
+
+__all__ = ["TwoPortMemory"]
+
+
+class TwoPortMemory(wiring.Component):
+    """Each lane a block RAM of its own, so that the users do not meet.
+
+    The scan reads colours and the processing element depths, and what is written
+    goes through the other port: none of them ever waits.  The sweep takes clocks
+    in which nobody asks for anything.
+
+    What a block RAM reads in the clock in which that word is written differs from
+    one to the next, and may be neither the old word nor the new one.  It happens
+    for depths alone: there the word written is kept for a clock and answers in
+    place of the RAM.  The colour that is scanned is not the one that is drawn
+    into, and the sweep is alone.
+
+    Latency: one clock from a read to the data.  Throughput: a scan, a write and
+    a read a clock.
+
+    Members
+    -------
+    access: In(MemoryAccess)
+
+    Raises ``ValueError`` for a size out of range.
+    """
+
+    latency = 1
+
+    def __init__(self, *, words: int, depth_bits: int, tag_bits: int):
+        access = MemoryAccess(words=words, depth_bits=depth_bits, tag_bits=tag_bits)
+        self.words = words
+        self.depth_bits = depth_bits
+        self.tag_bits = tag_bits
+        # Spares synthesis the logic that would make a read beside a write see the old word.
+        self.storages = [memory.Memory(shape=access.members[name].shape, depth=words, init=[],
+                                       attrs={"no_rw_check": 1})
+                         for name in ("depth_in", "color_in", "color_in")]
+        super().__init__({"access": In(access)})
+
+    def elaborate(self, platform):
+        m = Module()
+        access = self.access
+        m.d.comb += access.sweep_busy.eq(access.scan | access.write | access.read)
+        sweep = access.sweep & ~access.sweep_busy
+        erase = Signal.like(access.erase)
+        m.d.comb += erase.eq(Mux(access.sweep_busy, 0, access.erase))
+
+        lanes = (  # name, who reads and where, whether it is written, what
+            ("depth", access.read, access.read_address, 1, access.depth_in),
+            ("color_0", access.scan, access.scan_address, ~access.back, access.color_in),
+            ("color_1", access.scan, access.scan_address, access.back, access.color_in),
+        )
+        answers = []
+        for lane, (name, asked, address, chosen, written) in enumerate(lanes):
+            m.submodules[name] = storage = self.storages[lane]
+            write, read = storage.write_port(), storage.read_port()
+            m.d.comb += [
+                read.addr.eq(Mux(asked, address, access.sweep_address)),
+                read.en.eq(asked | sweep),
+                write.addr.eq(Mux(access.write, access.write_address, access.sweep_address)),
+                write.en.eq((access.write & chosen) | erase[lane]),
+                # Whatever else is written with it, tag 0 erases.
+                write.data.value.eq(written.value),
+                write.data.tag.eq(Mux(access.write, written.tag, 0)),
+            ]
+            answers.append(read.data)
+
+        met = Signal()
+        written = Signal.like(access.depth_in)
+        m.d.sync += [
+            met.eq(access.read & access.write & (access.read_address == access.write_address)),
+            written.eq(access.depth_in),
+        ]
+        m.d.comb += [
+            access.depth.eq(Mux(met, written, answers[0])),
+            access.color[0].eq(answers[1]),
+            access.color[1].eq(answers[2]),
+        ]
+        return m
