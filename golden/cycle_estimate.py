@@ -1,13 +1,13 @@
 """About how many clocks a machine takes to draw a frame, without simulating it.
 
 A processing element walks each triangle row by row on the lattice of its own
-pixels, and each fragment takes its unit's port for a read and, where it is
-visible, a write.  A triangle takes it the longer of
+pixels, and each fragment takes its unit's one port for a read and, where it is
+visible, a write; or of two ports one clock.  A triangle takes it the longer of
 
     walk     its load, the lattice stride's bits, a clock a row
     ports    the accesses of its fragments, slowed down by the scan's slots
 
-The frame takes the clear, a clock a word, and then the busiest processing element.
+The frame takes what the busiest processing element takes.
 Where it errs: how often a fragment is visible is the average for a random order of
 drawing; one triangle's walk overlaps with the ports' work for the one before by a
 few rows only, and broadcasts wait for a full FIFO.
@@ -36,7 +36,7 @@ Int64 = NDArray[np.int64]
 
 #: The span walker takes one to load a triangle, before the stride's bits and the rows.
 LOAD_CLOCKS = 1
-#: From the frame's start to the clear's first word, from the last fragment to done.
+#: From the frame's start to the first triangle, from the last fragment to done.
 LATENCY_CLOCKS = 16
 
 #: What is tried for a number of cycles: up to so many processing elements, each with so many units.
@@ -48,18 +48,16 @@ UNITS_EACH = (1, 2, 4)
 class CycleEstimate:
     """Clocks to draw one frame.
 
-    ``clear``      before the first triangle
-    ``draw``       float64, per processing element, from then on
+    ``draw``       float64, per processing element
     ``fragments``  int64, per processing element; exact
     """
 
-    clear: float
     draw: Float64
     fragments: Int64
 
     @property
     def total(self) -> int:
-        return round(self.clear + float(self.draw.max(initial=0)) + LATENCY_CLOCKS)
+        return round(float(self.draw.max(initial=0)) + LATENCY_CLOCKS)
 
 
 @dataclass(frozen=True)
@@ -82,8 +80,10 @@ def estimate_cycles(configuration: MachineConfiguration,
     shares = domains(configuration.cards)
     blocks = [block for element, (first, count) in enumerate(shares)
               for block in _blocks(element, first, first + count, interlace)]
-    accesses = 1 + visible_share(depth_complexity(display_list, **shifts))
-    slots = _scan_share(configuration)
+    accesses, slots = 1.0, 0.0
+    if configuration.memory_ports == 1:
+        accesses += visible_share(depth_complexity(display_list, **shifts))
+        slots = _scan_share(configuration)
     draw, fragments = np.zeros(len(shares)), np.zeros(len(shares), np.int64)
     runs = list(spans(triangles))
     for x_bits, y_bits in sorted({(block.x_bits, block.y_bits) for block in blocks}):
@@ -98,7 +98,7 @@ def estimate_cycles(configuration: MachineConfiguration,
                 if (block.x_bits, block.y_bits, block.x_offset) == (x_bits, y_bits, x_offset):
                     draw[block.element] += work[block.y_offset]
                     fragments[block.element] += covered[:, block.y_offset].sum()
-    return CycleEstimate(interlace.words / (1 - slots), draw, fragments)
+    return CycleEstimate(draw, fragments)
 
 
 def visible_share(complexity: NDArray[np.int32]) -> float:

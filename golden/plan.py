@@ -123,7 +123,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         "edge_fraction_bits": needs.edge_fraction_bits,
         "depth_integer_bits": needs.depth_integer_bits(fraction_bits),
         "channel_integer_bits": needs.channel_integer_bits(fraction_bits),
-        # Behind the clear of the frame's start all of them can wait.
+        # Behind one that is drawn all of them can wait.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
     } | {name: value for name, value in rest.items() if name != "shading"})
     full = full_machine(max_error=max_error, **size | {

@@ -56,11 +56,12 @@ def some_simulator():
 
 
 def spoilt():
-    """The machine with the lowest bit of red wrong at one address of every memory unit, except
-    where it writes black: what the boot leaves is right."""
+    """The machine with the lowest bit of red, above the tag, wrong at one address of every memory
+    unit."""
     text, count = re.subn(
-        r"(words\[write_address\]\[(?:47:24|71:48)\] <= (write_data\[\d+:\d+\]))",
-        rf"\1 ^ (write_address == {SPOILT_ADDRESS} && \2 != 0)", machine_verilog(MACHINE))
+        r"(words\[write_address\]\[(?:55:28|83:56)\] <= write_data\[\d+:\d+\])",
+        rf"\1 ^ ((write_address == {SPOILT_ADDRESS}) << {MACHINE.tag_bits})",
+        machine_verilog(MACHINE))
     assert count == 2, "front and back colours"
     return text
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -71,14 +72,21 @@ def test_equal_to_golden_whatever_the_memory_and_the_stalls(engine, seed):
 
 
 def test_memories_are_random_at_power_on():
-    """Seen on the pixels of a unit that no processing element owns, so nobody clears it."""
-    configuration = configure(LIST, cards="MPM", clocks_per_pixel=2, allow_orphans=True)
-    engine = VerilatorEngine()
-    videos = [simulate(configuration, LIST, engine, memory_seed=seed).video
-              for seed in (1, 2, None)]
-    assert (videos[0][::2] != videos[1][::2]).any(), "rows of unit 0"
-    np.testing.assert_array_equal(videos[0][1::2], videos[1][1::2])
-    assert not videos[2][::2].any()
+    """Seen in a machine that initialises no colour, and shows every word, whatever its tag."""
+    text = verilog.machine_verilog(CONFIGURATION)
+    text, count = re.subn(r"(write_enable\[[12]\])(\) words\S+:(28|56)\])",
+                          r"\1 && write_data[\3 +: 4] != 0\2", text)
+    text, also = re.subn(r"\w+ \? (shown\[27:4\]) : pictures__background;", r"\1;", text)
+    assert (count, also) == (2, 1)
+    engine = VerilatorEngine(verilog=text)
+    first, second, zero = (simulate(CONFIGURATION, LIST, engine, memory_seed=seed).video
+                           for seed in (1, 2, None))
+    drawn = exact.depth_complexity(LIST) > 0
+    color = exact.draw(LIST).color
+    assert not zero[~drawn].any()
+    for video in (first, second, zero):
+        np.testing.assert_array_equal(video[drawn], color[drawn])
+    assert (first[~drawn] != second[~drawn]).any() and first[~drawn].any()
 
 
 def test_a_model_is_built_once(engine, cache):
@@ -100,7 +108,7 @@ def patched(right, wrong):
 
 def test_a_netlist_whose_units_do_not_answer_is_found_out():
     with pytest.raises(TimeoutError, match="responses"):  # what nobody owns is not sent
-        patched("[23:0] <= write_data[23:0];", "[23:0] <= 24'd0;").run(
+        patched("[27:0] <= write_data[27:0];", "[27:0] <= 28'd0;").run(
             frame_job(CONFIGURATION, LIST))
 
 
