@@ -99,6 +99,8 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
         "fifo_depth": configuration.fifo_depth,
         "memory_ports": configuration.memory_ports,
         "tag_bits": configuration.tag_bits,
+        "setup": configuration.setup,
+        "setup_interval": configuration.setup_interval,
         "clocks_per_pixel": configuration.clocks_per_pixel,
         "cycles_per_scan": configuration.cycles_per_scan,
     }

@@ -47,6 +47,18 @@ def test_accepted(texts, tmp_path, name, shading):
     assert verilator_lint(tmp_path, "machine", "machine.vlt", "machine.v") == (0, "")
 
 
+def test_a_machine_that_sets_triangles_up_is_accepted(tmp_path):
+    """And its description says how long that takes."""
+    configuration = preset("tiny", setup="hardware", setup_interval=256)
+    text = machine_verilog(configuration)
+    assert "central_broadcast_controller__setup__depth_plane__divider" in text
+    (tmp_path / "machine.v").write_text(text)
+    (tmp_path / "machine.vlt").write_text(WAIVERS.read_text())
+    assert verilator_lint(tmp_path, "machine", "machine.vlt", "machine.v") == (0, "")
+    timing = describe(configuration, text)["timing"]["triangle_setup"]
+    assert timing["interval_clocks"] > 3 * 28 and timing["latency_clocks"] > 28
+
+
 def test_each_waiver_is_needed(texts, tmp_path):
     tops = {"machine": texts("tiny", "flat"),
             "edge_walker": component_verilog(COMPONENTS["edge_walker"](preset("tiny")),

@@ -136,6 +136,17 @@ def test_options_override_the_preset(place, engine):
     assert machine["shading"] == "flat"
 
 
+@pytest.mark.parametrize(("setup", "interval"), [("host", 1), ("small", 256)])
+def test_who_sets_triangles_up(place, setup, interval):
+    result = run("render", SCENE, "--preset", "tiny", "--setup", setup, "--engine", "pysim",
+                 "--shading", "flat")
+    assert result.exit_code == 0, result.output
+    facts = json.loads(Path("cardcage-out/report.json").read_text())
+    assert facts["equal"] is True
+    assert facts["machine"]["setup"] == ("host" if setup == "host" else "hardware")
+    assert facts["machine"]["setup_interval"] == interval
+
+
 def test_waveform(place):
     result = run("render", "random:n=1,size=4", "--size", "4x4", "--cards", "PM",
                  "--waveform", "wave.vcd")
