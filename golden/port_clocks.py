@@ -88,7 +88,7 @@ class PortClocks:
         self._configuration = configuration
         self._display_list = display_list
         self._triangles = triangles
-        self._two_ports = getattr(configuration, "memory_ports", 1) == 2
+        self._two_ports = configuration.memory_ports == 2
         self._rows = RowClocks(configuration.processing_elements, configuration.units)
         interlace = configuration.interlace
         self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)

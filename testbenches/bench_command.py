@@ -46,7 +46,7 @@ def _numbers(least: int, most: int) -> Several:
 @click.argument("cases", nargs=-1, metavar="[CASE]...")
 @click.option("--elements", type=_numbers(1, 4096), help="Processing elements.  [default: 1,16]")
 @click.option("--units", type=_numbers(1, 64), help="Memory units of each.  [default: 2]")
-@click.option("--ports", type=_numbers(1, 2), help="Ports of a memory unit.  [default: the most]")
+@click.option("--ports", type=_numbers(1, 2), help="Ports of a memory unit.  [default: 2]")
 @click.option("--setup", "setups", type=Several(click.Choice(list(SETUPS)), "WHO,…"),
               help="Who prepares the triangles: host, small or fast hardware.  [default: host]")
 @click.option("--block", "blocks", type=_numbers(1, 32), help="Pixels a side that neighbour in "
