@@ -69,7 +69,7 @@ class PlaneSetup(wiring.Component):
     -------
     grid: In(grid_layout)
     start: In(1)
-        Prepare what is at the inputs, and stays there while the triangle's slots last.
+        Prepare what is at the inputs.
     slot: In(2)
         One of ``Slot``, in turn.
     upper: In(value_bits)
@@ -89,6 +89,9 @@ class PlaneSetup(wiring.Component):
     """
 
     def __init__(self, *, configuration: MachineConfiguration, value_bits: int, word_bits: int):
+        for name, bits in (("value_bits", value_bits), ("word_bits", word_bits)):
+            if bits < 1:
+                raise ValueError(f"{name} must be positive, not {bits}")
         self.configuration = c = configuration
         self.value_bits = value_bits
         self.word_bits = word_bits

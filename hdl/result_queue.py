@@ -17,8 +17,8 @@ class ResultQueue(wiring.Component):
 
     Parameters
     ----------
-    result_bits: int
-    depth: int
+    result_bits: int, positive
+    depth: int, at least 2
         Words it holds.
 
     Members
@@ -33,8 +33,9 @@ class ResultQueue(wiring.Component):
     latency = 2
 
     def __init__(self, *, result_bits: int, depth: int):
-        if depth < 2:
-            raise ValueError(f"depth must be at least 2, not {depth}")
+        for name, value, least in (("result_bits", result_bits, 1), ("depth", depth, 2)):
+            if value < least:
+                raise ValueError(f"{name} must be at least {least}, not {value}")
         self.result_bits = result_bits
         self.depth = depth
         self._word = data.ArrayLayout(result_bits, 3)
