@@ -14,7 +14,7 @@ class Activity(IntEnum):
     PORT = 1  # a fragment waited: its unit's port was writing
     SCAN = 2  # a fragment waited: its unit's port was the scan's
     EMPTY_ROW = 3  # no fragment: the walker met a row or a block without pixels of its own
-    PREPARING = 4  # no fragment: the walker loaded a triangle or took up the lattice
+    PREPARING = 4  # no fragment: the walker took up another block of its domain
     FILLING = 5  # no fragment: the first one of a span was still on its way
     BROADCAST = 6  # nothing to draw: the FIFO of another processing element was full
     SETUP = 7  # nothing to draw: the next triangle was not set up

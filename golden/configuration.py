@@ -196,6 +196,11 @@ class MachineConfiguration:
         return max(1, (self.words - 1).bit_length())
 
     @property
+    def square_bits(self) -> int:
+        """Log2 of the side of the squares that processing elements interlace in."""
+        return 0
+
+    @property
     def edge_word_bits(self) -> int:
         return self.edge_column_bits + self.edge_fraction_bits
 

@@ -5,11 +5,12 @@ from collections.abc import Callable
 from amaranth.lib import wiring
 
 from ..golden.configuration import MachineConfiguration
+from .broadcast_queue import BroadcastQueue
 from .central_broadcast_controller import CentralBroadcastController
 from .depth_test import DepthTest
 from .divider import Divider
+from .edge_columns import EdgeColumns
 from .edge_setup import EdgeSetup
-from .edge_walker import EdgeWalker
 from .fragment_stepper import FragmentStepper
 from .frame_tags import FrameTags
 from .id_increment import IdIncrement
@@ -25,7 +26,9 @@ from .processing_element_control import ProcessingElementControl
 from .read_back import ReadBack
 from .response_link import ResponseLink
 from .result_queue import ResultQueue
+from .row_walker import RowWalker
 from .sampling_grid import SamplingGrid
+from .span_clip import SpanClip
 from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
@@ -50,10 +53,11 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "processing_element": lambda c: ProcessingElement(configuration=c),
     "memory_unit": lambda c: MemoryUnit(configuration=c),
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
+    "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "depth_test": lambda c: DepthTest(configuration=c),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
-    "edge_walker": lambda c: EdgeWalker(configuration=c),
+    "edge_columns": lambda c: EdgeColumns(configuration=c),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
     "frame_tags": lambda c: FrameTags(configuration=c),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
@@ -73,7 +77,9 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
+    "row_walker": lambda c: RowWalker(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
+    "span_clip": lambda c: SpanClip(configuration=c),
     "span_start": lambda c: SpanStart(configuration=c),
     "span_walker": lambda c: SpanWalker(configuration=c),
     "survey": lambda c: Survey(configuration=c),

@@ -6,6 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
 from ..golden.interlace import Interlace
+from .lattice import lattice_layout
 
 __all__ = ["LatticeBlock", "PixelAddress", "ScanAddress", "unit_number"]
 
@@ -32,6 +33,8 @@ class PixelAddress(wiring.Component):
         Its word there.  Both are 0 while ``total`` is no supported number.
     words: Out(range(words + 1))
         Words of each unit that hold the picture.
+    width: Out(x_bits)
+        Columns of the picture.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -43,6 +46,7 @@ class PixelAddress(wiring.Component):
             "unit": Out(configuration.id_bits),
             "address": Out(configuration.address_bits),
             "words": Out(range(configuration.words + 1)),
+            "width": Out(configuration.x_bits),
         })
 
     def elaborate(self, platform):
@@ -60,6 +64,7 @@ class PixelAddress(wiring.Component):
                         column.eq(self.x >> interlace.x_unit_bits),
                         pitch.eq(interlace.pitch),
                         self.words.eq(interlace.words),
+                        self.width.eq(interlace.width),
                     ]
         m.d.comb += self.address.eq(row * pitch + column)
         return m
@@ -136,26 +141,18 @@ class LatticeBlock(wiring.Component):
         The range of units, ``end`` excluded; not empty.
     after: Out(id_bits)
         First unit after the block.
-    x_offset, y_offset: Out
-        The lattice's pixel nearest the origin.
-    x_stride_bits, y_stride_bits: Out
-        Log2 of the distance between neighbouring lattice pixels.
+    lattice: Out(lattice_layout)
+        The pixels of the block.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        interlaces = configuration.interlaces()
-        x_bits = max(interlace.x_unit_bits for interlace in interlaces)
-        y_bits = max(interlace.y_unit_bits for interlace in interlaces)
         super().__init__({
             "total": In(configuration.id_bits),
             "first": In(configuration.id_bits),
             "end": In(configuration.id_bits),
             "after": Out(configuration.id_bits),
-            "x_offset": Out(x_bits),
-            "y_offset": Out(y_bits),
-            "x_stride_bits": Out(range(x_bits + 1)),
-            "y_stride_bits": Out(range(y_bits + 1)),
+            "lattice": Out(lattice_layout(configuration)),
         })
 
     def elaborate(self, platform):
@@ -170,12 +167,13 @@ class LatticeBlock(wiring.Component):
                         if block_bits <= interlace.unit_bits:
                             x_stride, y_stride = interlace.stride_bits(block_bits)
                             with m.Case(interlace.units):
-                                m.d.comb += [self.x_stride_bits.eq(x_stride),
-                                             self.y_stride_bits.eq(y_stride)]
+                                m.d.comb += [self.lattice.x_stride_bits.eq(x_stride),
+                                             self.lattice.x_mask.eq((1 << x_stride) - 1),
+                                             self.lattice.y_mask.eq((1 << y_stride) - 1)]
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):
                     for place, (axis, bit) in enumerate(reversed(interlace.bit_order)):
-                        offset = self.x_offset if axis == "x" else self.y_offset
+                        offset = self.lattice.x_offset if axis == "x" else self.lattice.y_offset
                         m.d.comb += offset[bit].eq(self.first[place])
         return m

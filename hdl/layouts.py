@@ -9,10 +9,14 @@ from ..golden.configuration import MachineConfiguration
 __all__ = [
     "Operation",
     "broadcast_layout",
+    "operation_layout",
+    "outline_layout",
+    "planes_layout",
     "prepared_triangle_layout",
     "response_layout",
     "span_layout",
     "struct_layout",
+    "walked_outline_layout",
 ]
 
 
@@ -38,6 +42,31 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> data.Struct
     return struct_layout(commands.prepared_triangle_layout(configuration))
 
 
+def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A prepared triangle without its interpolants: rows, columns and edges."""
+    layout = prepared_triangle_layout(configuration).members
+    return data.StructLayout({name: shape for name, shape in layout.items() if name != "planes"})
+
+
+def walked_outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """An outline, and above it the first row of a processing element's lattice."""
+    return data.StructLayout({**outline_layout(configuration).members,
+                              "first_row": unsigned(configuration.y_bits)})
+
+
+def planes_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """The interpolants of a prepared triangle."""
+    return struct_layout(commands.planes_layout(configuration))
+
+
+def operation_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A broadcast word as it waits in a processing element, interpolants elsewhere."""
+    return data.StructLayout({
+        "operation": Operation,
+        "triangle": walked_outline_layout(configuration),
+    })
+
+
 def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """One broadcast word: an operation and its body."""
     return data.StructLayout({
@@ -54,14 +83,15 @@ def response_layout() -> data.StructLayout:
 
 
 def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """A run of one lattice row of a triangle: where it starts and how many pixels it has.
+    """A run of pixels of one row of a triangle: where it starts and how many pixels it has.
 
     ``x``, ``y``        first pixel, at the machine's resolution
     ``x_steps``         pixel columns from the triangle's origin to it
     ``y_steps``         pixel rows from the triangle's origin to it
     ``more``            pixels after the first
     ``x_stride_bits``   log2 of the distance between neighbouring pixels of the run
-    ``planes``          the triangle's interpolants at its origin
+    ``none``            no pixel at all
+    ``last``            nothing of the triangle follows
     """
     return data.StructLayout({
         "x": unsigned(configuration.x_bits),
@@ -70,5 +100,6 @@ def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
         "y_steps": unsigned(configuration.y_bits),
         "more": unsigned(configuration.x_bits),
         "x_stride_bits": range(configuration.maximum_units.bit_length()),
-        "planes": struct_layout(commands.planes_layout(configuration)),
+        "none": 1,
+        "last": 1,
     })

@@ -8,10 +8,11 @@ from ..golden.activity import ACTIVITY_BITS
 from ..golden.configuration import MachineConfiguration
 from .activity import ElementActivity
 from .backplane import BroadcastLines, Connector
+from .broadcast_queue import BroadcastQueue
 from .depth_test import DepthTest
 from .fragment_stepper import FragmentStepper
 from .interlace import PixelAddress
-from .layouts import broadcast_layout
+from .layouts import span_layout
 from .line_selector import LineSelector
 from .processing_element_control import ProcessingElementControl
 from .read_back import ReadBack
@@ -25,25 +26,29 @@ __all__ = ["ProcessingElement"]
 
 COUNTER_BITS = 32
 
+#: Spans found ahead, so that rows of few pixels hide behind longer ones.
+SPANS_WAITING = 16
+SPANS_LATENCY = 2
+
 
 class ProcessingElement(wiring.Component):
     """Owns the memory units up to the next processing element (figure 12).
 
     ::
 
-        broadcast ─▶ FIFO ─▶ control ─▶ SpanWalker ─▶ SpanStart ─▶ FragmentStepper ─▶ DepthTest
-                               │                                                        │
-                               ├─▶ Survey, ReadBack ───────────────────────────────────▶┤
-                               ▼                                                        ▼
-                         response link ◀── from the right                 lines to the right
+        broadcast ─▶ queue ─▶ control ─▶ SpanWalker ─▶ FIFO ─▶ SpanStart ─▶ FragmentStepper
+                                │                                                   │
+                                │                                               DepthTest
+                                ├─▶ Survey, ReadBack ──────────────────────────────▶┤
+                                ▼                                                   ▼
+                          response link ◀── from the right            lines to the right
 
     It drives the lines to its right and ignores those from its left; the ID and
     the responses pass through.
 
-    Latency: from a triangle's strobe to the read of its first fragment,
-    ``latency`` clocks more than the lattice stride's bits.  Throughput: a
-    fragment a clock while rows are long and ports are free; each row and each
-    triangle costs the span walker at least a clock.  A visible fragment takes
+    Latency: from a triangle's strobe to the read of its first fragment ``latency``
+    clocks.  Throughput: a fragment a clock while ports are free: rows are found
+    ahead, at one a clock, triangle after triangle.  A visible fragment takes
     two accesses of its unit's one port, so two clocks where a row lies in one
     unit (domains of one or two units), one where units alternate along it.
 
@@ -57,8 +62,8 @@ class ProcessingElement(wiring.Component):
         What it does in this clock; only where the configuration says ``observe``.
     """
 
-    #: FIFO 2, walker's load 1, span start 2, fragment stepper 2.
-    latency = 2 + 1 + SpanStart.latency + FragmentStepper.latency
+    latency = (BroadcastQueue.latency + SpanWalker.latency + SPANS_LATENCY + SpanStart.latency
+               + FragmentStepper.latency)
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -74,11 +79,11 @@ class ProcessingElement(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         configuration = self.configuration
-        layout = broadcast_layout(configuration)
-        m.submodules.fifo = queue = fifo.SyncFIFOBuffered(width=layout.size,
-                                                          depth=configuration.fifo_depth)
+        m.submodules.queue = queue = BroadcastQueue(configuration=configuration)
         m.submodules.control = control = ProcessingElementControl(configuration=configuration)
         m.submodules.walker = walker = SpanWalker(configuration=configuration)
+        m.submodules.spans = spans = fifo.SyncFIFOBuffered(
+            width=span_layout(configuration).size, depth=SPANS_WAITING)
         m.submodules.start = start = SpanStart(configuration=configuration)
         m.submodules.stepper = stepper = FragmentStepper(configuration=configuration)
         m.submodules.depth_test = depth_test = self.depth_test
@@ -88,30 +93,38 @@ class ProcessingElement(wiring.Component):
         m.submodules.picture = picture = PixelAddress(configuration=configuration)
 
         # From the broadcast to the operations.
-        m.d.comb += [
-            queue.w_en.eq(self.broadcast.strobe),
-            queue.w_data.eq(self.broadcast.packet),
-            self.broadcast.ready.eq(queue.w_rdy),
-        ]
         operations = wires(m, "operation_wires")
         operations.d.comb += [
-            control.operations.valid.eq(queue.r_rdy),
-            control.operations.payload.eq(queue.r_data),
-            queue.r_en.eq(control.operations.ready),
+            queue.strobe.eq(self.broadcast.strobe),
+            queue.packet.eq(self.broadcast.packet),
+            self.broadcast.ready.eq(queue.ready),
+            queue.lattice.eq(walker.lattice),
+            queue.whole.eq(walker.whole),
         ]
+        wiring.connect(operations, queue.operations, control.operations)
         wiring.connect(operations, control.triangles, walker.triangles)
 
         # The drawing pipeline.
         drawing = wires(m, "drawing_wires")
-        wiring.connect(drawing, walker.spans, start.spans)
+        drawing.d.comb += [
+            spans.w_en.eq(walker.spans.valid),
+            spans.w_data.eq(walker.spans.payload),
+            walker.spans.ready.eq(spans.w_rdy),
+            start.spans.valid.eq(spans.r_rdy),
+            start.spans.payload.eq(spans.r_data),
+            spans.r_en.eq(start.spans.ready),
+            control.drawing.eq(walker.busy | (spans.level != 0) | start.busy | stepper.busy
+                               | depth_test.busy),
+        ]
+        wiring.connect(drawing, queue.planes, start.planes)
         wiring.connect(drawing, start.started, stepper.started)
         wiring.connect(drawing, stepper.fragments, depth_test.fragments)
-        drawing.d.comb += control.drawing.eq(start.busy | stepper.busy | depth_test.busy)
 
         # The domain: first unit from the lines, upper end from the survey.
         first, end = self.left.id, survey.end
         domain = wires(m, "domain_wires")
-        domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total)]
+        domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total),
+                          walker.width.eq(picture.width)]
         for part in (walker, stepper, survey):
             domain.d.comb += part.total.eq(self.total)
         for part in (walker, survey, read_back, control):
@@ -144,7 +157,7 @@ class ProcessingElement(wiring.Component):
         wiring.connect(responses, control.responses, link.own)
         wiring.connect(responses, wiring.flipped(self.right.response), link.right)
         wiring.connect(responses, link.left, wiring.flipped(self.left.response))
-        quiet = (queue.level == 0) & control.idle
+        quiet = queue.empty & control.idle
         responses.d.comb += [
             link.own_turn.eq(~quiet),
             self.broadcast.done.eq(quiet & ~link.left.valid),
@@ -167,7 +180,7 @@ class ProcessingElement(wiring.Component):
     def _observe(self, m, control, walker, depth_test):
         """Listens to the walker and the depth test, some clocks further on."""
         m.submodules.observer = observer = ElementActivity(
-            delay=SpanStart.latency + FragmentStepper.latency)
+            delay=SPANS_LATENCY + SpanStart.latency + FragmentStepper.latency)
         fragments, lines = depth_test.fragments, self.right.lines
         m.d.comb += [
             observer.offered.eq(fragments.valid),
@@ -176,7 +189,7 @@ class ProcessingElement(wiring.Component):
                                 & ~lines.write_busy),
             observer.preparing.eq(walker.preparing),
             observer.empty_row.eq(walker.empty_row),
-            observer.walking.eq(walker.triangles.valid),
+            observer.walking.eq(walker.busy),
             observer.service.eq(~control.idle & ~control.triangles.valid & ~control.drawing),
             self.activity.eq(observer.activity),
         ]

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.commands import ResponseKind
 from ..golden.configuration import MachineConfiguration
-from .layouts import Operation, broadcast_layout, prepared_triangle_layout, response_layout
+from .layouts import Operation, operation_layout, walked_outline_layout, response_layout
 
 __all__ = ["ProcessingElementControl"]
 
@@ -20,8 +20,8 @@ class ProcessingElementControl(wiring.Component):
 
     Members
     -------
-    operations: In(stream of broadcast_layout)
-    triangles: Out(stream of prepared triangles)
+    operations: In(stream of operation_layout)
+    triangles: Out(stream of walked_outline_layout)
     drawing: In(1)
         The datapath behind ``triangles`` holds something.
     survey_start, read_back_start: Out(1)
@@ -48,8 +48,8 @@ class ProcessingElementControl(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
-            "operations": In(stream.Signature(broadcast_layout(configuration))),
-            "triangles": Out(stream.Signature(prepared_triangle_layout(configuration))),
+            "operations": In(stream.Signature(operation_layout(configuration))),
+            "triangles": Out(stream.Signature(walked_outline_layout(configuration))),
             "drawing": In(1),
             **{f"{service}_{when}": flow(1) for service in ("survey", "read_back")
                for when, flow in (("start", Out), ("done", In))},
@@ -71,7 +71,7 @@ class ProcessingElementControl(wiring.Component):
         operations, response = self.operations, self.responses.payload
         operation = operations.payload.operation
         is_draw = operation == Operation.DRAW
-        m.d.comb += self.triangles.payload.eq(operations.payload.body.draw)
+        m.d.comb += self.triangles.payload.eq(operations.payload.triangle)
 
         def report(kind, value, then):
             m.d.comb += [

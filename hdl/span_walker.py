@@ -5,39 +5,55 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .edge_walker import EdgeWalker
-from .interlace import LatticeBlock
-from .layouts import prepared_triangle_layout, span_layout
+from .edge_columns import EdgeColumns
+from .lattice import lattice_layout
+from .layouts import walked_outline_layout, span_layout
+from .row_walker import RowWalker
+from .span_clip import SpanClip
 
 __all__ = ["SpanWalker"]
 
 
 class SpanWalker(wiring.Component):
-    """Prepared triangles in, the spans of this domain out; nothing is searched for.
+    """Outlines of triangles in, the spans of this domain out; nothing is searched for.
 
-    The domain is walked as aligned blocks of units, whose pixels form a regular
-    lattice.  In each lattice row the long edge and one of the short edges give
-    the first and the last column exactly (the top-left rule lies in the rounding
-    of the set-up); the span is what of the lattice lies between.  The triangle
-    stays at the input until its last block is walked.
+    ::
 
-    Latency, per block: one clock to load, ``y_stride_bits`` clocks to take up
-    the lattice, then the first row's span is offered.  Throughput: a row a
-    clock, with or without pixels; a block without any row takes one clock there.
+        triangles ─▶ RowWalker ─▶ EdgeColumns ─▶ SpanClip ─▶ spans
+
+    Latency: ``latency`` clocks to the first row's span.  Throughput: a row or a
+    span a clock, the next triangle without a bubble.
 
     Members
     -------
     total, first, end: In(id_bits)
         Number of units; this domain, ``end`` excluded.  Static while triangles come.
-    triangles: In(stream of prepared triangles)
+    width: In(x_bits)
+        Columns of the picture, at the machine's resolution.
+    triangles: In(stream of walked_outline_layout)
     spans: Out(stream of span_layout)
+<<<<<<< HEAD
         Rows downwards, blocks in order; no empty spans.
     preparing, empty_row: Out(1)
         In this clock it loads or takes up the lattice; it passes a row without a span.
 
     Fuchs & Johnson, figure 13 and the text around it: the regular pattern that
     allows rapid incremental computation.
+=======
+        Rows downwards, blocks in order.  Each triangle ends with its ``last``, which may be
+        ``none``; otherwise no span is empty.
+    lattice: Out(lattice_layout), whole: Out(1)
+        As of ``RowWalker``.
+    busy: Out(1)
+        Holds a row or a span.
+    preparing: Out(1)
+        In this clock it takes up another block of its domain.
+    empty_row: Out(1)
+        In this clock a row without a span is taken.
+>>>>>>> 16eee3a (Rows by multiplication: spans found a row a clock, triangles without a bubble; what misses a processing element costs nothing)
     """
+
+    latency = RowWalker.latency + EdgeColumns.latency + SpanClip.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -45,29 +61,41 @@ class SpanWalker(wiring.Component):
             "total": In(configuration.id_bits),
             "first": In(configuration.id_bits),
             "end": In(configuration.id_bits),
-            "triangles": In(stream.Signature(prepared_triangle_layout(configuration))),
+            "width": In(configuration.x_bits),
+            "triangles": In(stream.Signature(walked_outline_layout(configuration))),
             "spans": Out(stream.Signature(span_layout(configuration))),
+<<<<<<< HEAD
+            "preparing": Out(1),
+=======
+            "lattice": Out(lattice_layout(configuration)),
+            "whole": Out(1),
+            "busy": Out(1),
+>>>>>>> 16eee3a (Rows by multiplication: spans found a row a clock, triangles without a bubble; what misses a processing element costs nothing)
             "preparing": Out(1),
             "empty_row": Out(1),
         })
 
     def elaborate(self, platform):
         m = Module()
-        triangle = self.triangles.payload
-        m.submodules.block = block = LatticeBlock(configuration=self.configuration)
-        edges = {name: EdgeWalker(configuration=self.configuration)
-                 for name in ("long", "upper", "lower")}
-        for name, edge in edges.items():
-            m.submodules[f"{name}_edge"] = edge
-            m.d.comb += edge.edge.eq(triangle[name])
-
-        started = Signal()  # the block register holds; otherwise the domain's first is next
-        after = Signal.like(self.first)
+        m.submodules.rows = rows = RowWalker(configuration=self.configuration)
+        m.submodules.columns = columns = EdgeColumns(configuration=self.configuration)
+        m.submodules.clip = clip = SpanClip(configuration=self.configuration)
+        wiring.connect(m, wiring.flipped(self.triangles), rows.triangles)
+        wiring.connect(m, rows.rows, columns.rows)
+        wiring.connect(m, columns.extents, clip.extents)
+        wiring.connect(m, clip.spans, wiring.flipped(self.spans))
         m.d.comb += [
-            block.total.eq(self.total),
-            block.first.eq(Mux(started, after, self.first)),
-            block.end.eq(self.end),
+            rows.total.eq(self.total),
+            rows.first.eq(self.first),
+            rows.end.eq(self.end),
+            columns.width.eq(self.width),
+            self.lattice.eq(rows.lattice),
+            self.whole.eq(rows.whole),
+            self.busy.eq(rows.busy | columns.busy | clip.spans.valid),
+            self.preparing.eq(rows.preparing),
+            self.empty_row.eq(clip.empty),
         ]
+<<<<<<< HEAD
 
         x_offset = Signal.like(block.x_offset)
         y_offset = Signal.like(block.y_offset)
@@ -136,35 +164,6 @@ class SpanWalker(wiring.Component):
                         m.d.comb += self.triangles.ready.eq(last)
                         m.d.sync += started.eq(~last)
                         m.next = "LOAD"
+=======
+>>>>>>> 16eee3a (Rows by multiplication: spans found a row a clock, triangles without a bubble; what misses a processing element costs nothing)
         return m
-
-    def _span(self, m, edges, y, x_offset, x_stride_bits):
-        """Drive the span of this row; whether it holds no lattice pixel."""
-        triangle, span = self.triangles.payload, self.spans.payload
-        column_shape = edges["long"].column.shape()
-        short, left, right = (Signal(column_shape, name=name)
-                              for name in ("short", "left", "right"))
-        from_column = Signal(self.configuration.x_bits)
-        to_column = Signal(self.configuration.x_bits)
-        low, high = triangle.left, triangle.right
-        m.d.comb += [
-            short.eq(Mux(y < triangle.middle, edges["upper"].column, edges["lower"].column)),
-            left.eq(Mux(triangle.long_edge_left, edges["long"].column, short)),
-            right.eq(Mux(triangle.long_edge_left, short, edges["long"].column)),
-            from_column.eq(Mux(left < low, low, Mux(left > high, high, left))),
-            to_column.eq(Mux(right < low, low, Mux(right > high, high, right))),
-        ]
-        mask = Signal(self.configuration.x_bits)
-        x = Signal(range(self.configuration.width + self.configuration.maximum_units))
-        m.d.comb += [
-            mask.eq((1 << x_stride_bits) - 1),
-            x.eq(from_column + ((x_offset - from_column) & mask)),
-            span.x.eq(x),
-            span.y.eq(y),
-            span.x_steps.eq(x - triangle.left),
-            span.y_steps.eq(y - triangle.top),
-            span.more.eq((to_column - 1 - x) >> x_stride_bits),
-            span.x_stride_bits.eq(x_stride_bits),
-            span.planes.eq(triangle.planes),
-        ]
-        return x >= to_column

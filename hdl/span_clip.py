@@ -1,0 +1,93 @@
+"""What of a row belongs to one processing element."""
+
+from amaranth.hdl import *
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ..golden.configuration import MachineConfiguration
+from .edge_columns import extent_layout
+from .lattice import first_owned
+from .layouts import span_layout
+
+__all__ = ["SpanClip"]
+
+
+class SpanClip(wiring.Component):
+    """Extents in, the spans of the lattice's columns out.
+
+    Interlaced pixel by pixel, an extent has one span of pixels a stride apart;
+    interlaced in squares, a span of neighbouring pixels in each owned square that
+    it crosses.  An extent without an owned pixel has none, and leaves no trace
+    unless it is a triangle's last.
+
+    Latency: one clock.  Throughput: a span a clock; an extent without span costs one.
+
+    Members
+    -------
+    extents: In(stream of extent_layout)
+    spans: Out(stream of span_layout)
+    empty: Out(1)
+        In this clock an extent without a span is taken.
+    """
+
+    latency = 1
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "extents": In(stream.Signature(extent_layout(configuration))),
+            "spans": Out(stream.Signature(span_layout(configuration))),
+            "empty": Out(1),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        configuration, square_bits = self.configuration, self.configuration.square_bits
+        extent, span = self.extents.payload, self.spans.payload
+        lattice = extent.lattice
+
+        within = Signal()  # a span of this extent has been sent
+        beyond = (configuration.maximum_units + 1) << square_bits
+        current, x, following, end = (Signal(range(configuration.width + beyond), name=name)
+                                      for name in ("current", "x", "following", "end"))
+        x_first = first_owned(extent.begin, lattice.x_offset, lattice.x_mask, square_bits)
+        m.d.comb += [x.eq(Mux(within, current, x_first)), end.eq(extent.end)]
+        if square_bits:
+            square_end = ((x >> square_bits) + 1) << square_bits
+            with m.If(lattice.x_mask == 0):  # every column is owned
+                m.d.comb += following.eq(end)
+            with m.Else():
+                m.d.comb += following.eq(square_end + (lattice.x_mask << square_bits))
+                with m.If(square_end < extent.end):
+                    m.d.comb += end.eq(square_end)
+            more = end - 1 - x
+            stride_bits = 0
+        else:
+            m.d.comb += following.eq(end)
+            more = (end - 1 - x) >> lattice.x_stride_bits
+            stride_bits = lattice.x_stride_bits
+
+        move, empty, ended = Signal(), Signal(), Signal()
+        m.d.comb += [
+            move.eq(~self.spans.valid | self.spans.ready),
+            empty.eq(extent.none | (x >= extent.end)),
+            # Interlaced pixel by pixel, one span is all there is.
+            ended.eq(empty | (following >= extent.end) if square_bits else 1),
+            self.extents.ready.eq(move & ended),
+            self.empty.eq(self.extents.valid & move & empty),
+        ]
+        with m.If(move):
+            m.d.sync += [
+                self.spans.valid.eq(self.extents.valid & (~empty | extent.last)),
+                span.x.eq(x),
+                span.y.eq(extent.y),
+                span.x_steps.eq(x - extent.left),
+                span.y_steps.eq(extent.rows),
+                span.more.eq(more),
+                span.x_stride_bits.eq(stride_bits),
+                span.none.eq(empty),
+                span.last.eq(extent.last & ended),
+            ]
+            with m.If(self.extents.valid):
+                m.d.sync += [within.eq(~ended), current.eq(following)]
+        return m
