@@ -78,7 +78,6 @@ class BroadcastQueue(wiring.Component):
             drawn.eq(is_triangle),
             in_rows.eq(first_row < triangle.bottom),
             in_columns.eq(first_column < triangle.right),
-            # Other bodies are shorter than an outline.
             operations.w_data.eq(Cat(packet.operation, outline, first_row)),
             planes.w_data.eq(triangle.planes),
         ]

@@ -15,14 +15,14 @@ LIMB_BITS = 18
 
 
 def extent_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """Columns ``begin`` up to, without, ``end`` of row ``y``, held to the screen; maybe none.
+    """Columns ``first`` up to, without, ``beyond`` of row ``y``, held to the screen; maybe none.
 
     The other fields as in ``row_walker.row_layout``.
     """
     row = row_layout(configuration)
     return data.StructLayout({
-        "begin": configuration.x_bits,
-        "end": configuration.x_bits,
+        "first": configuration.x_bits,
+        "beyond": configuration.x_bits,
         **{name: row.members[name] for name in ("y", "rows", "left", "none", "last")},
         "lattice": lattice_layout(configuration),
     })
@@ -121,7 +121,7 @@ class EdgeColumns(wiring.Component):
         left = Mux(long_left, columns["long"], columns["short"])
         right = Mux(long_left, columns["short"], columns["long"])
         with m.If(move):
-            m.d.sync += [extent.begin.eq(self._held(left)), extent.end.eq(self._held(right))]
+            m.d.sync += [extent.first.eq(self._held(left)), extent.beyond.eq(self._held(right))]
         return m
 
     def _column(self, m, edge, rows, move, name):

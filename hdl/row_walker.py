@@ -93,16 +93,18 @@ class RowWalker(wiring.Component):
         # The lattice of the block that is walked, in registers.
         further = Signal()  # not the domain's first block
         settled = Signal(init=1)
-        begin, after = Signal.like(self.first), Signal.like(self.first)
-        last_block, nobody = Signal(), Signal()
+        block_first, after = (Signal.like(self.first, name=name)
+                              for name in ("block_first", "after"))
+        last_block = Signal()
+        nobody = Signal()  # the domain has no units
         lattice = Signal(lattice_layout(configuration))
         m.submodules.block = block = LatticeBlock(configuration=configuration)
         m.d.comb += [
             block.total.eq(self.total),
-            block.first.eq(Mux(further, begin, self.first)),
+            block.first.eq(Mux(further, block_first, self.first)),
             block.end.eq(self.end),
             self.lattice.eq(lattice),
-            self.whole.eq(last_block & ~further),
+            self.whole.eq(settled & last_block & ~further),
         ]
         m.d.sync += [
             settled.eq(1),
@@ -122,12 +124,12 @@ class RowWalker(wiring.Component):
         y, following, base, after_base = (
             Signal(range(configuration.height + beyond), name=name)
             for name in ("y", "following", "base", "after_base"))
-        load, walking, final = (Signal(name=name) for name in ("load", "walking", "final"))
+        load, walking, finishes = (Signal(name=name) for name in ("load", "walking", "finishes"))
         move = ~self.rows.valid | self.rows.ready
         m.d.comb += [
             walking.eq(holding & ~finding & ~priming),
-            final.eq(nobody | (ended & last_block)),
-            load.eq(settled & ~further & (~holding | (move & walking & final))),
+            finishes.eq(nobody | (ended & last_block)),
+            load.eq(settled & ~further & (~holding | (move & walking & finishes))),
             self.triangles.ready.eq(load),
             base.eq(Mux(load, coming.first_row, Mux(priming, y, following))),
             after_base.eq(next_owned(base, lattice.y_mask, square_bits)),
@@ -141,19 +143,19 @@ class RowWalker(wiring.Component):
         with m.If(priming):
             m.d.sync += [priming.eq(0), outside.eq(y >= triangle.bottom)]
         with m.If(move):
-            m.d.sync += self.rows.valid.eq(walking & (final | ~outside))
+            m.d.sync += self.rows.valid.eq(walking & (finishes | ~outside))
             self._row(m, triangle, y, row)
             m.d.sync += [
                 row.lattice.eq(lattice),
                 row.none.eq(nobody | outside),
-                row.last.eq(final),
+                row.last.eq(finishes),
             ]
             with m.If(walking):
                 m.d.sync += y.eq(following)
-                with m.If(final):
+                with m.If(finishes):
                     m.d.sync += [holding.eq(0), further.eq(0), settled.eq(~further)]
                 with m.Elif(ended):
-                    m.d.sync += [finding.eq(1), further.eq(1), settled.eq(0), begin.eq(after)]
+                    m.d.sync += [finding.eq(1), further.eq(1), settled.eq(0), block_first.eq(after)]
         with m.If(load | priming | (move & walking)):
             m.d.sync += [
                 following.eq(after_base),

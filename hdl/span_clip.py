@@ -46,19 +46,19 @@ class SpanClip(wiring.Component):
         extent, span = self.extents.payload, self.spans.payload
         lattice = extent.lattice
 
-        within = Signal()  # a span of this extent has been sent
-        beyond = (configuration.maximum_units + 1) << square_bits
-        current, x, following, end = (Signal(range(configuration.width + beyond), name=name)
+        underway = Signal()  # a span of this extent has been sent
+        past = (configuration.maximum_units + 1) << square_bits
+        current, x, following, end = (Signal(range(configuration.width + past), name=name)
                                       for name in ("current", "x", "following", "end"))
-        x_first = first_owned(extent.begin, lattice.x_offset, lattice.x_mask, square_bits)
-        m.d.comb += [x.eq(Mux(within, current, x_first)), end.eq(extent.end)]
+        x_first = first_owned(extent.first, lattice.x_offset, lattice.x_mask, square_bits)
+        m.d.comb += [x.eq(Mux(underway, current, x_first)), end.eq(extent.beyond)]
         if square_bits:
             square_end = ((x >> square_bits) + 1) << square_bits
             with m.If(lattice.x_mask == 0):  # every column is owned
                 m.d.comb += following.eq(end)
             with m.Else():
                 m.d.comb += following.eq(square_end + (lattice.x_mask << square_bits))
-                with m.If(square_end < extent.end):
+                with m.If(square_end < extent.beyond):
                     m.d.comb += end.eq(square_end)
             more = end - 1 - x
             stride_bits = 0
@@ -67,12 +67,12 @@ class SpanClip(wiring.Component):
             more = (end - 1 - x) >> lattice.x_stride_bits
             stride_bits = lattice.x_stride_bits
 
-        move, empty, ended = Signal(), Signal(), Signal()
+        move, empty, ended = (Signal(name=name) for name in ("move", "empty", "ended"))
         m.d.comb += [
             move.eq(~self.spans.valid | self.spans.ready),
-            empty.eq(extent.none | (x >= extent.end)),
+            empty.eq(extent.none | (x >= extent.beyond)),
             # Interlaced pixel by pixel, one span is all there is.
-            ended.eq(empty | (following >= extent.end) if square_bits else 1),
+            ended.eq(empty | (following >= extent.beyond) if square_bits else 1),
             self.extents.ready.eq(move & ended),
             self.empty.eq(self.extents.valid & move & empty),
         ]
@@ -89,5 +89,5 @@ class SpanClip(wiring.Component):
                 span.last.eq(extent.last & ended),
             ]
             with m.If(self.extents.valid):
-                m.d.sync += [within.eq(~ended), current.eq(following)]
+                m.d.sync += [underway.eq(~ended), current.eq(following)]
         return m

@@ -115,15 +115,14 @@ def test_scan_address(picture, units):
     evaluate(dut, steps)
 
 
-def lattice(x_offset, y_offset, x_stride_bits, y_stride_bits, size=16):
-    return {(x, y) for y in range(y_offset, size, 1 << y_stride_bits)
-            for x in range(x_offset, size, 1 << x_stride_bits)}
+def lattice(x_offset, y_offset, across, down, size=16):
+    return {(x, y) for y in range(y_offset, size, down) for x in range(x_offset, size, across)}
 
 
 def test_lattice_blocks_tile_every_domain():
     configuration = machine(16, 16, 256)
     dut = LatticeBlock(configuration=configuration)
-    x_bits, y_bits = len(dut.x_offset), len(dut.y_offset)
+    x_bits, y_bits = len(dut.lattice.x_offset), len(dut.lattice.y_offset)
     assert (x_bits, y_bits) == (2, 2)
 
     def steps(ctx):
@@ -148,8 +147,9 @@ def test_lattice_blocks_tile_every_domain():
             assert size & (size - 1) == 0 and first % size == 0
             # The largest such block: twice as many would not be aligned, or go beyond the end.
             assert first % (2 * size) or first + 2 * size > end
-            found = lattice(*(ctx.get(port) for port in (
-                dut.x_offset, dut.y_offset, dut.x_stride_bits, dut.y_stride_bits)))
+            owned = ctx.get(dut.lattice)
+            assert owned.x_mask + 1 == 1 << owned.x_stride_bits
+            found = lattice(owned.x_offset, owned.y_offset, owned.x_mask + 1, owned.y_mask + 1)
             assert found == set.union(*(pixels[unit] for unit in range(first, after)))
             blocks.append(size)
             first = after

@@ -8,7 +8,7 @@ from hdl_bench.verilog_tools import verilator_lint
 from cardcage.golden.plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.hdl.cell_count import count_cells
-from cardcage.hdl.edge_walker import EdgeWalker
+from cardcage.hdl.edge_columns import EdgeColumns
 from cardcage.hdl.id_increment import IdIncrement
 from cardcage.hdl.one_port_memory import OnePortMemory
 from cardcage.hdl.processing_element import ProcessingElement
@@ -79,6 +79,6 @@ def test_the_weights_of_small_netlists():
 
 def test_an_edges_registers(plans):
     """Fewer of them by what the plan says of the widths."""
-    narrow, wide = (count_cells(EdgeWalker(configuration=configuration))
+    narrow, wide = (count_cells(EdgeColumns(configuration=configuration))
                     for configuration in (plans["flat"].configuration, plans["flat"].full))
     assert narrow.flip_flops < wide.flip_flops and narrow.gates < wide.gates

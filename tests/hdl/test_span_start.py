@@ -13,7 +13,8 @@ from cardcage.hdl.span_start import SpanStart, started_span_layout
 PASSED_ON = ("x", "y", "more", "x_stride_bits")
 
 
-def random_spans(configuration, seed, count):
+def random_spans(configuration, seed, count, more=2):
+    """``count`` triangles of up to ``more`` spans, each with the planes of its triangle."""
     source = random.Random(f"spans {seed}")
 
     def plane(bits):
@@ -25,16 +26,29 @@ def random_spans(configuration, seed, count):
         return (source.getrandbits(8) if configuration.shading == "flat"
                 else plane(configuration.channel_plane_bits))
 
-    strides = configuration.maximum_units.bit_length()
-    return [{
-        "x": source.randrange(configuration.width), "y": source.randrange(configuration.height),
-        "x_steps": source.randrange(configuration.width),
-        "y_steps": source.randrange(configuration.height),
-        "more": source.randrange(configuration.width),
-        "x_stride_bits": source.randrange(strides),
-        "planes": {"depth": plane(configuration.depth_plane_bits),
-                   **{name: channel() for name in CHANNELS}},
-    } for _ in range(count)]
+    def span(planes, last):
+        return {
+            "x": source.randrange(configuration.width),
+            "y": source.randrange(configuration.height),
+            "x_steps": source.randrange(configuration.width),
+            "y_steps": source.randrange(configuration.height),
+            "more": source.randrange(configuration.width),
+            "x_stride_bits": source.randrange(configuration.maximum_units.bit_length()),
+            "none": int(more > 1 and last and source.random() < 0.3), "last": int(last),
+            "planes": planes,
+        }
+
+    spans = []
+    for _ in range(count):
+        planes = {"depth": plane(configuration.depth_plane_bits),
+                  **{name: channel() for name in CHANNELS}}
+        inside = source.randrange(more)
+        spans += [span(planes, place == inside) for place in range(inside + 1)]
+    return spans
+
+
+def without_planes(spans):
+    return [{name: value for name, value in span.items() if name != "planes"} for span in spans]
 
 
 def expected(configuration, span):
@@ -72,28 +86,33 @@ def test_products_and_sums(kind, seed):
     dut = SpanStart(configuration=configuration)
     assert dut.started.payload.shape() == started_span_layout(configuration)
     spans = random_spans(configuration, f"{kind} {seed}", 60)
-    source = Source(dut.spans, spans, pauses(f"in {seed}"))
-    sink = Sink(dut.started, len(spans), pauses(f"out {seed}"))
+    drawn = [span for span in spans if not span["none"]]
+    assert 60 < len(drawn) < len(spans)
+    source = Source(dut.spans, without_planes(spans), pauses(f"in {seed}"))
+    planes = Source(dut.planes, [span["planes"] for span in spans if span["last"]])
+    sink = Sink(dut.started, len(drawn), pauses(f"out {seed}"))
     holds = []
 
     def count(ctx, clock):
-        busy = ctx.get(dut.busy)
-        holds.append((len(source.taken) - len(sink.items), busy))
+        entered = sum(not span["none"] for span in spans[:len(source.taken)])
+        holds.append((entered - len(sink.items), ctx.get(dut.busy)))
 
     # Counted before this clock's transfers are: what it holds now.
-    simulate(dut, Watch(count), source, sink, after=3)
+    simulate(dut, Watch(count), source, planes, sink, after=3)
     assert [decoded(item) for item in sink.items] == [expected(configuration, span)
-                                                      for span in spans]
+                                                      for span in drawn]
     assert all(busy == (held > 0) for held, busy in holds)
-    assert {held for held, _ in holds} == {0, 1, 2}
+    assert {held for held, _ in holds} == set(range(dut.latency + 1))
 
 
 def test_latency_and_throughput():
     configuration = small_machine("PM", 8, 8)
     dut = SpanStart(configuration=configuration)
-    spans = random_spans(configuration, "speed", 20)
-    source, sink = Source(dut.spans, spans), Sink(dut.started, len(spans), no_pause)
-    simulate(dut, source, sink)
-    assert dut.latency == 2
-    assert source.taken == list(range(20))
+    spans = random_spans(configuration, "speed", 20, more=1)
+    source = Source(dut.spans, without_planes(spans))
+    planes = Source(dut.planes, [span["planes"] for span in spans])
+    sink = Sink(dut.started, len(spans), no_pause)
+    simulate(dut, source, planes, sink)
+    assert dut.latency == 4
+    assert source.taken == planes.taken == list(range(20))
     assert sink.clocks == [clock + dut.latency for clock in source.taken]

@@ -1,10 +1,11 @@
 """Spans of random triangles on random domains: every covered pixel of the domain, once."""
 
 import random
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from hdl_bench.bench import Drive, simulate
+from hdl_bench.bench import Agent, Drive, simulate
 from hdl_bench.pictures import (
     covered,
     prepare,
@@ -14,7 +15,6 @@ from hdl_bench.pictures import (
 )
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden.commands import CHANNELS
 from cardcage.hdl.span_walker import SpanWalker
 
 
@@ -51,52 +51,105 @@ def expected_spans(configuration, display_list, prepared, first, end):
                 yield index, (rows[y][0], y, len(rows[y]), across)
 
 
-def schedule(configuration, prepared, expected, first, end):
-    """The clock of every span, and of the last row of every triangle, when nothing waits.
+def owned_rows(interlace, start, size, top, bottom):
+    """Rows top … bottom - 1 on which the block has pixels."""
+    down = stride(interlace, size)[1]
+    offset = min(interlace.pixel(unit, 0)[1] for unit in range(start, start + size))
+    return [row for row in range(top, bottom) if (row - offset) % down == 0]
 
-    Per block: a clock to load, one for each bit of the row stride, then a row a clock.
+
+def schedule(configuration, prepared, expected, first, end):
+    """The clock of every span, and that in which each triangle is taken, when nothing waits.
+
+    A row a clock, and the next triangle at once; where there are several blocks, two clocks to
+    find the first row of the first and three for that of each other.
     """
     interlace = configuration.interlace
-    spans, triangles, clock = {}, [], 0
+    parts = list(blocks(first, end))
+    whole = len(parts) == 1
+    spans, triangles, clock = {}, [], SETTLED
     for index in range(len(prepared)):
-        rows = range(int(prepared.top[index]), int(prepared.bottom[index]))
-        for start, size in blocks(first, end):
-            down = stride(interlace, size)[1]
-            offset = min(interlace.pixel(unit, 0)[1] for unit in range(start, start + size))
-            clock += 1 + down.bit_length() - 1
-            walked = [row for row in rows if (row - offset) % down == 0]
-            spans |= {(index, start, row): clock + place for place, row in enumerate(walked)}
-            clock += max(1, len(walked))
-        triangles.append(clock - 1)
-    starts = {unit: start for start, size in blocks(first, end)
-              for unit in range(start, start + size)}
+        triangles.append(clock)
+        walk = clock + (1 if whole else 3)
+        for start, size in parts:
+            walked = owned_rows(interlace, start, size, int(prepared.top[index]),
+                                int(prepared.bottom[index]))
+            spans |= {(index, start, row): walk + place + SpanWalker.latency - 1
+                      for place, row in enumerate(walked)}
+            walk += max(1, len(walked)) + 3
+        clock = walk - 4 + (0 if whole else 2)
+    starts = {unit: start for start, size in parts for unit in range(start, start + size)}
     return [spans[index, starts[interlace.unit(x, y)], y]
             for index, (x, y, _, _) in expected], triangles
 
 
+def reached(configuration, display_list, first, end):
+    """Prepared triangles that have a row in the domain, as the queue before lets them through,
+    with the first such row."""
+    prepared = prepare(configuration, display_list)
+    start, size = next(blocks(first, end), (0, 0))
+    kept, values = [], []
+    for index, triangle in enumerate(prepared_values(configuration, prepared)):
+        rows = (owned_rows(configuration.interlace, start, size, triangle["top"],
+                           triangle["bottom"]) if size == end - first else [0])
+        if rows:
+            kept.append(index)
+            del triangle["planes"]
+            values.append(triangle | {"first_row": rows[0]})
+    return kept, values
+
+
+#: Clocks until the walker knows its lattice.
+SETTLED = 3
+
+
+def once(clocks, pause):
+    """``pause`` after waiting ``clocks`` at first."""
+    waits = iter([clocks])
+    return lambda: next(waits, None) or pause()
+
+
+class Until(Agent):
+    """Goes on until ``count()`` has reached ``wanted``."""
+
+    def __init__(self, count, wanted):
+        self._count = count
+        self._wanted = wanted
+
+    @property
+    def finished(self):
+        return self._count() >= self._wanted
+
+
 def run(configuration, display_list, first, end, pause):
     dut = SpanWalker(configuration=configuration)
+    kept, triangles = reached(configuration, display_list, first, end)
     prepared = prepare(configuration, display_list)
-    triangles = prepared_values(configuration, prepared)
+    prepared = replace(prepared, **{name: getattr(prepared, name)[kept]
+                                    for name in ("primitive", "top", "bottom")})
     expected = list(expected_spans(configuration, display_list, prepared, first, end))
-    source = Source(dut.triangles, triangles, pause[0])
-    sink = Sink(dut.spans, len(expected), pause[1])
+    source = Source(dut.triangles, triangles, once(SETTLED, pause[0]))
+    sink = Sink(dut.spans, pause=pause[1])
 
     def lines(ctx, clock):
         ctx.set(dut.total, configuration.units)
         ctx.set(dut.first, first)
         ctx.set(dut.end, end)
+        ctx.set(dut.width, configuration.interlace.width)
 
-    simulate(dut, Drive(lines), source, sink, after=3)
-    for span, (index, (x, y, pixels, across)) in zip(sink.items, expected, strict=True):
+    simulate(dut, Drive(lines), source, Until(lambda: sum(item.last for item in sink.items),
+                                              len(triangles)), sink, after=3)
+    assert sum(item.last for item in sink.items) == len(triangles)
+    found = [(clock, span) for clock, span in zip(sink.clocks, sink.items, strict=True)
+             if not span.none]
+    for (_, span), (index, (x, y, pixels, across)) in zip(found, expected, strict=True):
         assert (span.x, span.y, span.more, 1 << span.x_stride_bits) == (x, y, pixels - 1, across)
         triangle = triangles[index]
         assert (span.x_steps, span.y_steps) == (x - triangle["left"], y - triangle["top"])
-        assert {part: span.planes.depth[part] for part in ("start", "step_x", "step_y")} == (
-            triangle["planes"]["depth"])
-        assert [span.planes[name] for name in CHANNELS] == [
-            triangle["planes"][name] for name in CHANNELS]
-    return prepared, expected, source, sink
+    # What ends a triangle comes after all its spans.
+    ends = [place for place, span in enumerate(sink.items) if span.last]
+    assert ends == sorted(ends) and ends[-1] == len(sink.items) - 1
+    return prepared, expected, source, found
 
 
 #: Cards, the domain to walk, words (0: enough), picture.
@@ -127,45 +180,27 @@ def test_spans_are_the_covered_pixels_of_the_domain(machine, seed):
     assert len(expected) > 5
 
 
-def test_gouraud_planes_pass_through():
-    configuration = small_machine("PM", 8, 8, shading="gouraud")
-    display_list = random_triangles(5, 4, width=8, height=8)
-    dut = SpanWalker(configuration=configuration)
-    triangles = prepared_values(configuration, prepare(configuration, display_list))
-    sink = Sink(dut.spans)
-
-    def lines(ctx, clock):
-        ctx.set(dut.total, 1)
-        ctx.set(dut.end, 1)
-
-    simulate(dut, Drive(lines), Source(dut.triangles, triangles), sink, after=3)
-    planes = [{name: {part: span.planes[name][part] for part in ("start", "step_x", "step_y")}
-               for name in ("depth", *CHANNELS)} for span in sink.items]
-    assert planes
-    assert all(plane in [triangle["planes"] for triangle in triangles] for plane in planes)
-
-
 @pytest.mark.parametrize("machine", MACHINES)
 def test_latency_and_throughput(machine):
     cards, (first, end), words, (width, height) = MACHINES[machine]
     configuration = small_machine(cards, width, height, words=words)
     display_list = random_triangles(f"{machine} speed", 40, width=width, height=height)
-    prepared, expected, source, sink = run(configuration, display_list, first, end,
-                                           (no_pause, no_pause))
+    prepared, expected, source, found = run(configuration, display_list, first, end,
+                                            (no_pause, no_pause))
     spans, triangles = schedule(configuration, prepared, expected, first, end)
-    assert sink.clocks == spans
+    assert [clock for clock, _ in found] == spans
     assert source.taken == triangles
 
 
-def test_an_empty_domain_takes_a_clock_a_triangle_and_gives_nothing():
+def test_an_empty_domain_takes_a_clock_a_triangle_and_ends_each():
     configuration = small_machine("PPM")
-    display_list = random_triangles(1, 30, width=8, height=8)
     dut = SpanWalker(configuration=configuration)
-    triangles = prepared_values(configuration, prepare(configuration, display_list))
-    source, sink = Source(dut.triangles, triangles), Sink(dut.spans)
+    _, triangles = reached(configuration, random_triangles(1, 30, width=8, height=8), 0, 1)
+    source = Source(dut.triangles, triangles, once(SETTLED, no_pause))
+    sink = Sink(dut.spans, len(triangles))
     simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, 1)), source, sink, after=5)
-    assert source.taken == list(range(len(triangles)))
-    assert not sink.items
+    assert source.taken == [SETTLED + place for place in range(len(triangles))]
+    assert all(span.none and span.last for span in sink.items)
 
 
 def test_every_share_of_eight_units_adds_up():
@@ -179,10 +214,10 @@ def test_every_share_of_eight_units_adds_up():
         display_list = random_triangles(f"cut {round_}", 5, width=8, height=8)
         pixels = []
         for first, end in pairwise(ends):
-            _, _, _, sink = run(configuration, display_list, first, end,
-                                (no_pause, pauses(round_)))
+            _, _, _, found = run(configuration, display_list, first, end,
+                                 (no_pause, pauses(round_)))
             pixels += [(span.x + step * (1 << span.x_stride_bits), span.y)
-                       for span in sink.items for step in range(span.more + 1)]
+                       for _, span in found for step in range(span.more + 1)]
         everything = [pixel for primitive in range(5)
                       for pixel in covered(display_list, primitive, configuration.interlace)]
         assert sorted(pixels) == sorted(everything)

@@ -28,16 +28,26 @@ MUTANTS = {
         "m.d.sync += has_written.eq(0)", "pass"),
     "depth steps one pixel instead of the lattice's stride": (
         "span_start", "SpanStart", ["processing_element"],
-        "step_x << carried.x_stride_bits", "step_x"),
-    "edge remainder never carries": (
-        "edge_walker", "EdgeWalker", ["span_walker"],
-        "total >= self.edge.denominator", "0"),
-    "edge carry at equality missed": (
-        "edge_walker", "EdgeWalker", ["span_walker"],
-        "total >= self.edge.denominator", "total > self.edge.denominator"),
+        "step_x << stride", "step_x"),
+    "edges without their fraction": (
+        "edge_columns", "EdgeColumns", ["span_walker"],
+        "addends[0])", "(addends[0] >> self.configuration.edge_fraction_bits"
+        " << self.configuration.edge_fraction_bits))"),
+    "the short edge counts rows from the top": (
+        "row_walker", "RowWalker", ["span_walker"],
+        "Mux(in_upper, triangle.top, triangle.middle)", "triangle.top"),
+    "a row skipped at the end": (
+        "row_walker", "RowWalker", ["span_walker"],
+        "after_base >= Mux", "after_base + 1 >= Mux"),
+    "a span ends a pixel late": (
+        "span_clip", "SpanClip", ["span_walker"],
+        "(end - 1 - x)", "(end - x)"),
     "row step added twice": (
         "span_start", "SpanStart", ["processing_element"],
-        "origin + along_x + along_y", "origin + along_x + along_y + along_y"),
+        'addends.append(start)', 'addends += [start, addends[-1]]'),
+    "a triangle kept from the element that has its last column": (
+        "broadcast_queue", "BroadcastQueue", ["processing_element"],
+        "< triangle.right", "< triangle.right - 1"),
     "ID chain does not count": (
         "id_increment", "IdIncrement", ["memory_unit"],
         "self.left + 1", "self.left"),
