@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.commands import ResponseKind
 from ..golden.configuration import MachineConfiguration
-from .layouts import Operation, operation_layout, walked_outline_layout, response_layout
+from .layouts import Operation, operation_layout, response_layout, walked_outline_layout
 
 __all__ = ["ProcessingElementControl"]
 

@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from ..golden.configuration import MachineConfiguration
 from .edge_columns import EdgeColumns
 from .lattice import lattice_layout
-from .layouts import walked_outline_layout, span_layout
+from .layouts import span_layout, walked_outline_layout
 from .row_walker import RowWalker
 from .span_clip import SpanClip
 

@@ -8,8 +8,8 @@ from hdl_bench.verilog_tools import icarus, verilator_lint, yosys
 from cardcage.golden.configuration import preset
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.description import component_for, describe
-from cardcage.hdl.members import described_ports
 from cardcage.hdl.layouts import operation_layout, planes_layout, span_layout
+from cardcage.hdl.members import described_ports
 from cardcage.hdl.verilog import component_ports, component_verilog, machine_verilog
 from cardcage.testbenches.export import COMPONENT_NAMES, WAIVERS
 
