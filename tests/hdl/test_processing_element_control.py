@@ -87,7 +87,7 @@ class Parts(Agent):
 
 
 def operation(kind, marker=0):
-    return {"operation": kind, "body": {"draw": {"top": marker % 8, "left": marker // 8 % 8}}}
+    return {"operation": kind, "triangle": {"top": marker % 8, "left": marker // 8 % 8}}
 
 
 def word(dut, kind, marker=0):
@@ -137,7 +137,7 @@ def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
     simulate(dut, Watch(watch), source, triangles, responses, datapath, parts, after=8)
     assert [(item.kind, item.value) for item in responses.items] == answers
     layout = dut.operations.payload.shape()
-    body = layout["body"].offset
+    body = layout["triangle"].offset
     size = len(Value.cast(dut.triangles.payload))
     assert [item.as_bits() for item in triangles.items] == [
         number >> body & (1 << size) - 1 for number in draws]

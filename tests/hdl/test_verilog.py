@@ -148,8 +148,8 @@ def test_description(texts):
     assert formats["vertex_coordinate"]["integer_bits"] == configuration.coordinate_bits - 8
     layouts = operation_layout, span_layout, planes_layout
     assert sorted(facts["memories"], key=lambda memory: -memory["words"]) == [
-        {"module": "memory_16384x84_lanes_3_no_rw_check", "words": 16384, "bits": 84, "instances": 16,
-         "contents_at_power_on": "unknown"},
+        {"module": "memory_16384x84_lanes_3_no_rw_check", "words": 16384, "bits": 84,
+         "instances": 16, "contents_at_power_on": "unknown"},
         *({"module": f"memory_15x{layout(configuration).size}", "words": 15,
            "bits": layout(configuration).size, "instances": 4,
            "contents_at_power_on": "unknown"} for layout in layouts)]
