@@ -60,7 +60,8 @@ class Fault(IntEnum):
     """The value of an ``ERROR`` response."""
 
     UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
-    UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two: nothing is drawn
+    UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two, or shares that must
+    # be equal are not: nothing is drawn
 
 
 RESPONSE_KIND_BITS = 8

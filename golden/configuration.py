@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, parse_cards
+from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
 from .display_list import DisplayList, coordinate_bits
 from .errors import InputError
 from .fixed import MAX_FRACTION_BITS
@@ -24,6 +24,7 @@ from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
+MAXIMUM_BLOCK = 32
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
@@ -43,6 +44,8 @@ class MachineConfiguration:
     ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
     ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
     ``fifo_depth``        primitives a processing element can hold in waiting
+    ``block``             side of the squares of pixels in which processing elements interlace, a
+                          power of two; 1 interlaces all memory units pixel by pixel
     ``memory_ports``      of a memory unit: 1, shared by all, or 2, as FPGAs have them
     ``tag_bits``          of the frame's tag beside each depth and colour, which spares the clear
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
@@ -77,6 +80,7 @@ class MachineConfiguration:
     words: int = 0
     maximum_units: int = 0
     fifo_depth: int = 16
+    block: int = 1
     memory_ports: int = 1
     tag_bits: int = 4
     clocks_per_pixel: int = 4
@@ -105,6 +109,7 @@ class MachineConfiguration:
             ("words", 0, MAXIMUM_WORDS),
             ("maximum_units", 0, MAXIMUM_SIZE),
             ("fifo_depth", 2, 4096),
+            ("block", 1, MAXIMUM_BLOCK),
             ("memory_ports", 1, 2),
             ("tag_bits", MINIMUM_TAG_BITS, MAXIMUM_TAG_BITS),
             ("clocks_per_pixel", 2, 256),
@@ -125,8 +130,10 @@ class MachineConfiguration:
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
         if not self.allow_orphans:
             check_cards(self.cards)
+        self._check_block()
         if not self.words:
-            full = Interlace(self.units.bit_length() - 1, self.width, self.height)
+            full = Interlace(self.units.bit_length() - 1, self.width, self.height,
+                             block_bits=self.square_bits, share_bits=self.share_bits)
             if full.words > MAXIMUM_WORDS:
                 raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
                                  f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
@@ -144,6 +151,22 @@ class MachineConfiguration:
             raise InputError(f"timing: shows {self.timing.horizontal_active}x"
                              f"{self.timing.vertical_active}, the machine draws "
                              f"{self.width}x{self.height}")
+
+    def _check_block(self) -> None:
+        if self.block & (self.block - 1):
+            raise InputError(f"block: must be a power of two, such as 1, 4 or {MAXIMUM_BLOCK}, not "
+                             f"{self.block}")
+        if self.block == 1:
+            return
+        squares = f"block: squares of {self.block}x{self.block} pixels"
+        shares = {units for _, units in domains(self.cards)}
+        if len(shares) > 1 and not self.allow_orphans:
+            raise InputError(f"{squares} want as many memory units behind each processing element, "
+                             f"not {' and '.join(map(str, sorted(shares)))}; change the cards, or "
+                             "interlace pixel by pixel (1)")
+        if self.share_bits > 2 * self.square_bits:
+            raise InputError(f"{squares} do not spread over {1 << self.share_bits} memory units; "
+                             f"make them larger, or interlace pixel by pixel (1)")
 
     def _widest(self) -> dict[str, int]:
         """The widths at which every triangle of the guard band fits."""
@@ -172,13 +195,16 @@ class MachineConfiguration:
     @property
     def interlace(self) -> Interlace:
         """The interlace this cage settles on at boot."""
-        return interlace_for(self.width, self.height, words=self.words, units=self.units)
+        return self._interlace_of(self.units)
 
     def interlaces(self) -> tuple[Interlace, ...]:
         """One for every number of units the cards must be ready for, fewest first."""
-        counts = [1 << bits for bits in range(self.maximum_units.bit_length())]
-        return tuple(interlace_for(self.width, self.height, words=self.words, units=units)
-                     for units in counts)
+        return tuple(self._interlace_of(1 << bits) for bits in
+                     range(self.share_bits, self.maximum_units.bit_length()))
+
+    def _interlace_of(self, units: int) -> Interlace:
+        return interlace_for(self.width, self.height, words=self.words, units=units,
+                             block_bits=self.square_bits, share_bits=self.share_bits)
 
     # Widths: each with its reason
 
@@ -198,7 +224,17 @@ class MachineConfiguration:
     @property
     def square_bits(self) -> int:
         """Log2 of the side of the squares that processing elements interlace in."""
-        return 0
+        return self.block.bit_length() - 1
+
+    @property
+    def share_bits(self) -> int:
+        """Log2 of the memory units of each processing element, where they interlace in squares.
+
+        Of the cards as built: with boards pulled out so that shares differ it draws nothing.
+        """
+        if self.block == 1:
+            return 0
+        return max(1, *(units for _, units in domains(self.cards))).bit_length() - 1
 
     @property
     def edge_word_bits(self) -> int:

@@ -1,14 +1,18 @@
 """Which memory unit holds a pixel, and at which address (Fuchs & Johnson, figures 13 and 14).
 
-Neighbouring pixels lie in different units.  With ``2**n`` units the low
-``x_unit_bits`` bits of x and the low ``y_unit_bits`` bits of y name the unit;
-y has the extra bit where n is odd, so that eight units hold pixels 2 apart in
-x and 4 in y, as in the paper.  The *most* significant bit of the unit number
-is the *least* significant bit of x, the next one that of y, and so on: a
-processing element owns consecutive numbers, and so the processing elements
+Neighbouring pixels lie in different units.  With ``2**n`` units some n bits of x
+and y name the unit; y has the extra bit where n is odd, so that eight units hold
+pixels 2 apart in x and 4 in y, as in the paper.  The *most* significant bit of the
+unit number is the *least* significant bit of x, the next one that of y, and so on:
+a processing element owns consecutive numbers, and so the processing elements
 interlace finely and a power-of-two share is itself a regular lattice.
 
-Inside a unit the pixels lie row after row, ``pitch`` words to a row.
+Where processing elements interlace in squares, of ``2**block_bits`` pixels a side,
+the bits of x and y above those inside a square name the processing element; the
+units of one, ``2**share_bits``, still interlace pixel by pixel, inside its squares.
+
+Inside a unit the pixels lie row after row, ``pitch`` words to a row; the bits of x
+and y that name the unit are left out.
 """
 
 from __future__ import annotations
@@ -31,7 +35,11 @@ class Interlace:
     """The bijection pixel ↔ (unit, address) of a machine of ``2**unit_bits`` units.
 
     ``width``, ``height``: the machine's own resolution; ``x_shift``, ``y_shift``: the low bits
-    of a highest-resolution address that do not exist in it.
+    of a highest-resolution address that do not exist in it.  ``block_bits``: log2 of the side of
+    the squares in which processing elements interlace, of ``2**share_bits`` units each; both 0
+    where all units interlace pixel by pixel, whomever they belong to.
+
+    Raises ``ValueError`` where there are fewer units than in a share, or fewer pixels in a square.
     """
 
     unit_bits: int
@@ -39,45 +47,58 @@ class Interlace:
     height: int
     x_shift: int = 0
     y_shift: int = 0
+    block_bits: int = 0
+    share_bits: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.share_bits <= min(self.unit_bits, 2 * self.block_bits):
+            raise ValueError(f"share_bits must be 0 to {min(self.unit_bits, 2 * self.block_bits)}, "
+                             f"not {self.share_bits}")
 
     @property
     def units(self) -> int:
         return 1 << self.unit_bits
 
     @property
-    def x_unit_bits(self) -> int:
-        return self.unit_bits // 2
+    def bit_order(self) -> tuple[tuple[str, int], ...]:
+        """Source of each bit of the unit number, most significant first: ``("x", 0)`` is x's
+        least significant bit."""
+        lattice_bits = self.unit_bits - self.share_bits
+        order = [("xy"[place % 2], self.block_bits + place // 2) for place in range(lattice_bits)]
+        if lattice_bits % 2:
+            order[-1] = ("y", order[-1][1])
+        inside = [("xy"[place % 2], place // 2) for place in range(self.share_bits)]
+        return (*order, *inside)
+
+    def unit_mask(self, axis: str) -> int:
+        """The bits of ``"x"`` or ``"y"`` that name the unit."""
+        return sum(1 << bit for name, bit in self.bit_order if name == axis)
 
     @property
-    def y_unit_bits(self) -> int:
-        return self.unit_bits - self.x_unit_bits
+    def group_bits(self) -> int:
+        """Log2 of how many pixels side by side lie in different units, at every such place: a
+        unit that has one of them reads it for the scan as they begin."""
+        mask = self.unit_mask("x")
+        return (~mask & (mask + 1)).bit_length() - 1
 
     @property
     def pitch(self) -> int:
         """Words a row takes in each unit; also the scan reads per unit and line, at worst."""
-        return _ceil_shift(self.width, self.x_unit_bits)
+        return _extent(self.width, self.unit_mask("x"))
 
     @property
     def rows(self) -> int:
-        return _ceil_shift(self.height, self.y_unit_bits)
+        return _extent(self.height, self.unit_mask("y"))
 
     @property
     def words(self) -> int:
         """Words of each unit that hold the picture."""
         return self.pitch * self.rows
 
-    @property
-    def bit_order(self) -> tuple[tuple[str, int], ...]:
-        """Source of each bit of the unit number, most significant first: ``("x", 0)`` is x's
-        least significant bit."""
-        pairs = [pair for bit in range(self.x_unit_bits) for pair in (("x", bit), ("y", bit))]
-        if self.unit_bits % 2:
-            pairs.append(("y", self.x_unit_bits))
-        return tuple(pairs)
-
     def stride_bits(self, block_bits: int) -> tuple[int, int]:
-        """Log2 of the distance in x and in y between neighbouring pixels of an aligned block of
-        ``2**block_bits`` units."""
+        """Log2 of the distance in x and in y between neighbouring squares of an aligned block of
+        ``2**block_bits`` units, a whole share at least; a distance of 1 is that of squares side
+        by side."""
         fixed = [axis for axis, _ in self.bit_order[: self.unit_bits - block_bits]]
         return fixed.count("x"), fixed.count("y")
 
@@ -88,12 +109,13 @@ class Interlace:
         return number
 
     def address(self, x: Coordinate, y: Coordinate) -> Coordinate:
-        return (y >> self.y_unit_bits) * self.pitch + (x >> self.x_unit_bits)
+        return (_without(y, self.unit_mask("y")) * self.pitch
+                + _without(x, self.unit_mask("x")))
 
     def pixel(self, unit: Coordinate, address: Coordinate) -> tuple[Coordinate, Coordinate]:
         """The inverse of ``unit`` and ``address``; padding words give pixels off the picture."""
-        x = (address % self.pitch) << self.x_unit_bits
-        y = (address // self.pitch) << self.y_unit_bits
+        x = _with_gaps(address % self.pitch, self.unit_mask("x"))
+        y = _with_gaps(address // self.pitch, self.unit_mask("y"))
         for place, (axis, bit) in enumerate(reversed(self.bit_order)):
             value = ((unit >> place) & 1) << bit
             if axis == "x":
@@ -103,7 +125,32 @@ class Interlace:
         return x, y
 
 
-def interlace_for(width: int, height: int, *, words: int, units: int) -> Interlace:
+def _without(value: Coordinate, mask: int) -> Coordinate:
+    """``value`` with the bits of ``mask`` left out, those above moved down."""
+    for bit in reversed(range(mask.bit_length())):
+        if mask >> bit & 1:
+            value = (value >> (bit + 1) << bit) | (value & ((1 << bit) - 1))
+    return value
+
+
+def _with_gaps(value: Coordinate, mask: int) -> Coordinate:
+    """The inverse of ``_without``: zeros in the places of ``mask``."""
+    for bit in range(mask.bit_length()):
+        if mask >> bit & 1:
+            value = (value >> bit << (bit + 1)) | (value & ((1 << bit) - 1))
+    return value
+
+
+def _extent(size: int, mask: int) -> int:
+    """How many different values ``_without`` gives for 0 … size - 1: they leave none out."""
+    last = size - 1
+    # Where a bit of the mask is set there is a smaller number without it, all ones below.
+    last |= (1 << (last & mask).bit_length()) - 1
+    return _without(last, mask) + 1
+
+
+def interlace_for(width: int, height: int, *, words: int, units: int, block_bits: int = 0,
+                  share_bits: int = 0) -> Interlace:
     """The interlace of ``units`` units (a power of two) of ``words`` words each.
 
     Where the memory does not hold ``width`` × ``height``, the picture is halved, y first, then
@@ -121,6 +168,8 @@ def interlace_for(width: int, height: int, *, words: int, units: int) -> Interla
             height=_ceil_shift(height, y_shift),
             x_shift=x_shift,
             y_shift=y_shift,
+            block_bits=block_bits,
+            share_bits=share_bits,
         )
         if interlace.words <= words:
             return interlace

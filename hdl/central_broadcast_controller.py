@@ -87,7 +87,8 @@ class CentralBroadcastController(wiring.Component):
         with m.If(self.scan_start):
             m.d.sync += scans.eq(scans + 1)
         supported, picture = self._picture(m)
-        self._count_owned(m, owned)
+        unequal = Signal()
+        self._count_owned(m, owned, unequal)
         pictures = self.pictures
         backgrounds = [Signal.like(pictures.background, name=f"background_{place}")
                        for place in range(2)]
@@ -145,7 +146,7 @@ class CentralBroadcastController(wiring.Component):
                         "CHECK_UNITS")
             with m.State("CHECK_UNITS"):
                 m.next = "INITIALISE"
-                with m.If(~supported):
+                with m.If(~supported | unequal):
                     m.next = "REFUSE"
             with m.State("INITIALISE"):
                 m.d.comb += pictures.initialise.eq(1)
@@ -241,9 +242,17 @@ class CentralBroadcastController(wiring.Component):
                                  picture.eq(interlace.height << 16 | interlace.width)]
         return supported, picture
 
-    def _count_owned(self, m, owned):
-        """Add up the domains as their reports pass; what is missing from the total is nobody's."""
+    def _count_owned(self, m, owned, unequal):
+        """Add up the domains as their reports pass; what is missing from the total is nobody's.
+
+        Squares are interlaced by equal shares only.
+        """
+        configuration = self.configuration
         response = self.right.response
+        units = response.payload.value[:16]
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
-            m.d.sync += owned.eq(owned + response.payload.value[:16])
+            m.d.sync += owned.eq(owned + units)
+            if configuration.square_bits:
+                with m.If(units != 1 << configuration.share_bits):
+                    m.d.sync += unequal.eq(1)

@@ -14,8 +14,14 @@ __all__ = ["LatticeBlock", "PixelAddress", "ScanAddress", "unit_number"]
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
     """The number of the unit that holds pixel (x, y): some low bits of both, reordered."""
     # A picture may have fewer rows or columns than there are units along them.
-    axes = {"x": Cat(x, C(0, interlace.unit_bits)), "y": Cat(y, C(0, interlace.unit_bits))}
+    axes = {axis: Cat(value, C(0, interlace.unit_mask(axis).bit_length()))
+            for axis, value in (("x", x), ("y", y))}
     return Cat(axes[axis][bit] for axis, bit in reversed(interlace.bit_order))
+
+
+def _without(value: Value, mask: int) -> Value:
+    """``value`` with the bits of ``mask`` left out, those above moved down."""
+    return Cat(value[bit] for bit in range(len(value)) if not mask >> bit & 1)
 
 
 class PixelAddress(wiring.Component):
@@ -60,8 +66,8 @@ class PixelAddress(wiring.Component):
                 with m.Case(interlace.units):
                     m.d.comb += [
                         self.unit.eq(unit_number(interlace, self.x, self.y)),
-                        row.eq(self.y >> interlace.y_unit_bits),
-                        column.eq(self.x >> interlace.x_unit_bits),
+                        row.eq(_without(self.y, interlace.unit_mask("y"))),
+                        column.eq(_without(self.x, interlace.unit_mask("x"))),
                         pitch.eq(interlace.pitch),
                         self.words.eq(interlace.words),
                         self.width.eq(interlace.width),
@@ -85,8 +91,8 @@ class ScanAddress(wiring.Component):
     selected: Out(1)
         This unit holds the pixel.
     fetch: Out(1)
-        The address is the first of a group of pixels that lie in neighbouring units, one of them
-        in this unit: the time to read ``address`` for the whole group.
+        The address is the first of a group of pixels that lie in different units, one of them in
+        this unit: the time to read ``address`` for the whole group.
     address: Out(address_bits)
         This unit's word of that group.
     """
@@ -113,15 +119,16 @@ class ScanAddress(wiring.Component):
         ]
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
-                of_y = [axis == "y" for axis, _ in reversed(interlace.bit_order)]
-                rows = sum(bit << place for place, bit in enumerate(of_y))
-                group_bits = interlace.x_shift + interlace.x_unit_bits
+                inside = [axis == "x" and bit < interlace.group_bits
+                          for axis, bit in reversed(interlace.bit_order)]
+                groups = sum((not bit) << place for place, bit in enumerate(inside))
+                group_bits = interlace.x_shift + interlace.group_bits
                 with m.Case(interlace.units):
                     m.d.comb += [
                         pixel.x.eq(self.x >> interlace.x_shift),
                         pixel.y.eq(self.y >> interlace.y_shift),
                         self.fetch.eq((self.x[:group_bits] == 0)
-                                      & (((pixel.unit ^ self.id) & rows) == 0)),
+                                      & (((pixel.unit ^ self.id) & groups) == 0)),
                     ]
         return m
 
@@ -131,7 +138,7 @@ class LatticeBlock(wiring.Component):
 
     The pixels of an aligned power-of-two block of units form a regular lattice;
     a processing element walks its domain block by block (one, where the shares
-    are equal powers of two).
+    are equal powers of two).  Interlaced in squares, a share is the only block.
 
     Members
     -------
@@ -157,7 +164,10 @@ class LatticeBlock(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        for block_bits in range(self.configuration.id_bits):
+        shares = range(self.configuration.id_bits)
+        if self.configuration.square_bits:
+            shares = (self.configuration.share_bits,)
+        for block_bits in shares:
             size = 1 << block_bits
             aligned = self.first[:block_bits] == 0
             with m.If(aligned & (self.first + size <= self.end)):
@@ -175,5 +185,6 @@ class LatticeBlock(wiring.Component):
                 with m.Case(interlace.units):
                     for place, (axis, bit) in enumerate(reversed(interlace.bit_order)):
                         offset = self.lattice.x_offset if axis == "x" else self.lattice.y_offset
-                        m.d.comb += offset[bit].eq(self.first[place])
+                        if place >= interlace.share_bits:
+                            m.d.comb += offset[bit - interlace.block_bits].eq(self.first[place])
         return m

@@ -16,8 +16,8 @@ def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``x_stride_bits``           log2 of the distance in x
     """
     interlaces = configuration.interlaces()
-    x_bits = max(interlace.x_unit_bits for interlace in interlaces)
-    y_bits = max(interlace.y_unit_bits for interlace in interlaces)
+    x_bits, y_bits = map(max, zip(*(interlace.stride_bits(interlace.share_bits)
+                                    for interlace in interlaces), strict=True))
     return data.StructLayout({
         "x_offset": x_bits, "y_offset": y_bits, "x_mask": x_bits, "y_mask": y_bits,
         "x_stride_bits": range(x_bits + 1),

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..golden.configuration import MAXIMUM_WORDS, PRESETS
+from ..golden.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS, PRESETS
 from ..golden.fixed import MAX_FRACTION_BITS
 from ..golden.plan import MAXIMUM_ERROR
 from ..golden.ranges import MAXIMUM_SIZE
@@ -77,6 +77,10 @@ _FURTHER_OPTIONS = (
     click.option("--memory-ports", type=click.IntRange(1, 2), metavar="1|2",
                  help="Ports of each memory unit's RAM: one for all as in 1979, or one to read and "
                  "one to write, as FPGAs have.  [default: 1]"),
+    click.option("--block", type=click.IntRange(1, MAXIMUM_BLOCK), metavar="N",
+                 help="Interlace processing elements in squares of NxN pixels, N a power of two; "
+                 "each wants as many memory units.  1 interlaces pixel by pixel, as in 1979, in "
+                 "any shares.  [default: 1]"),
     click.option("--setup", type=click.Choice(list(SETUPS)),
                  help="Who sets triangles up: the host, or the machine itself, with one divider "
                  "of each kind or a pipeline of them.  [default: host]"),

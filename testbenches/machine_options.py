@@ -41,6 +41,7 @@ class MachineOptions:
     ``words``             of each memory unit
     ``clocks_per_pixel``  clocks a pixel lasts on the video output
     ``memory_ports``      of each memory unit
+    ``block``             side of the squares of pixels that processing elements interlace in
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     """
@@ -54,6 +55,7 @@ class MachineOptions:
     words: int | None = None
     clocks_per_pixel: int | None = None
     memory_ports: int | None = None
+    block: int | None = None
     setup: SetupChoice | None = None
 
     def machine(self) -> dict[str, Any]:
@@ -61,7 +63,8 @@ class MachineOptions:
         if self.preset is not None and self.preset not in PRESETS:
             raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
         settled = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
-        for name in ("cards", "words", "clocks_per_pixel", "memory_ports", "fraction_bits"):
+        for name in ("cards", "words", "clocks_per_pixel", "memory_ports", "block",
+                     "fraction_bits"):
             if getattr(self, name) is not None:
                 settled[name] = getattr(self, name)
         if self.max_error is not None:

@@ -98,6 +98,8 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
         "depth_plane_bits": configuration.depth_plane_bits,
         "fifo_depth": configuration.fifo_depth,
         "memory_ports": configuration.memory_ports,
+        "block": configuration.block,
+        "scan_reads_per_line": interlace.pitch,
         "tag_bits": configuration.tag_bits,
         "setup": configuration.setup,
         "setup_interval": configuration.setup_interval,

@@ -78,7 +78,8 @@ class ConversationCheck:
             yield Expected(ResponseKind.DOMAIN, first << 16 | count, -1)
         owned = sum(count for _, count in self._domains)
         yield Expected(ResponseKind.UNITS, owned << 16 | configuration.units, -1)
-        if configuration.units.bit_count() != 1:
+        shares_differ = any(count != 1 << configuration.share_bits for _, count in self._domains)
+        if configuration.units.bit_count() != 1 or (configuration.block > 1 and shares_differ):
             yield Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, -1)
             return
         interlace = configuration.interlace

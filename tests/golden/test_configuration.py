@@ -29,6 +29,7 @@ GOOD = {"cards": "PMMPMM", "width": 16, "height": 8}
     "words": [-1, MAXIMUM_WORDS + 1],
     "maximum_units": [-1, 3, 4097],
     "fifo_depth": [0, 1, 4097],
+    "block": [0, -1, 3, 12, 33, 64, 2.0],
     "clocks_per_pixel": [0, 1, 257],
     "shading": ["phong", "", None],
     "cards": ["", "P", "M", "MPM", "PMMM", "PMZ", "2x(PM"],
@@ -50,7 +51,7 @@ def test_bad_fields(field, values):
 @pytest.mark.parametrize(("field", "values"), {
     "width": [1, 4096], "height": [1, 4096], "sub_bits": [1, 8], "depth_bits": [2, 32],
     "fraction_bits": [0, 64], "words": [1, MAXIMUM_WORDS], "maximum_units": [4, 4096],
-    "fifo_depth": [2, 4096], "clocks_per_pixel": [2, 256], "shading": ["flat", "gouraud"],
+    "fifo_depth": [2, 4096], "block": [1, 32], "clocks_per_pixel": [2, 256], "shading": ["flat", "gouraud"],
 }.items())
 def test_the_ends_of_every_range(field, values):
     for value in values:
@@ -91,6 +92,32 @@ def test_the_most_units_widen_the_lines_only():
     assert MachineConfiguration("PM", 1, 1, maximum_units=7).id_bits == 3
     assert [interlace.units for interlace in
             MachineConfiguration("PM", 4, 4, maximum_units=7).interlaces()] == [1, 2, 4]
+
+
+def test_squares_follow_the_cards():
+    configuration = MachineConfiguration("4x(PMM)", 32, 32, block=8)
+    assert (configuration.square_bits, configuration.share_bits) == (3, 1)
+    assert configuration.interlace.bit_order == (("x", 3), ("y", 3), ("x", 0))
+    assert configuration.words == 16 * 16 / 2
+    assert (configuration.interlace.pitch, MachineConfiguration("4x(PMM)", 32, 32).interlace.pitch
+            ) == (8, 16)
+    # A cage must hold one processing element's share at least.
+    more = MachineConfiguration("PMM", 32, 32, block=8, maximum_units=8)
+    assert [interlace.units for interlace in more.interlaces()] == [2, 4, 8]
+    # Pixel by pixel a share does not matter.
+    assert MachineConfiguration("4x(PMM)", 32, 32).share_bits == 0
+
+
+@pytest.mark.parametrize(("cards", "block", "message"), [
+    ("PMMMPM", 4, "want as many memory units behind each processing element, not 1 and 3; change"),
+    ("PPMM", 4, "not 0 and 2"),
+    ("PMMMMMMMM", 2, "squares of 2x2 pixels do not spread over 8 memory units; make them larger"),
+    ("PM", 6, "must be a power of two, such as 1, 4 or 32, not 6"),
+])
+def test_squares_want_equal_shares(cards, block, message):
+    with pytest.raises(InputError, match=f"^block: .*{message}"):
+        MachineConfiguration(cards, 16, 16, block=block)
+    assert MachineConfiguration(cards, 16, 16).block == 1
 
 
 def test_one_word_still_has_an_address():

@@ -2,14 +2,27 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cardcage.golden.interlace import Interlace, interlace_for
 
-INTERLACES = st.builds(Interlace, st.integers(0, 6), st.integers(1, 40), st.integers(1, 40))
+SIZES = st.integers(1, 80)
 
 
+@st.composite
+def interlaces(draw):
+    """Pixel by pixel, or in squares of every side."""
+    unit_bits, block_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
+    share_bits = draw(st.integers(0, min(unit_bits, 2 * block_bits)))
+    return Interlace(unit_bits, draw(SIZES), draw(SIZES), block_bits=block_bits,
+                     share_bits=share_bits)
+
+
+INTERLACES = interlaces()
+
+
+@settings(deadline=None)
 @given(INTERLACES)
 def test_a_bijection(interlace):
     y, x = np.mgrid[: interlace.height, : interlace.width]
@@ -22,6 +35,7 @@ def test_a_bijection(interlace):
     assert (back_y == y).all()
 
 
+@settings(deadline=None)
 @given(INTERLACES)
 def test_every_other_word_is_padding_off_the_picture(interlace):
     unit, address = np.divmod(np.arange(interlace.units * interlace.words), interlace.words)
@@ -77,6 +91,72 @@ def test_aligned_blocks_are_lattices(unit_bits, data):
     assert first_x < across
     assert first_y < down
     assert (inside == ((x % across == first_x) & (y % down == first_y))).all()
+
+
+@pytest.mark.parametrize(("unit_bits", "block_bits", "share_bits", "order"), [
+    (2, 1, 0, "x1 y1"),
+    (2, 1, 1, "y1 x0"),
+    (3, 1, 2, "y1 x0 y0"),
+    (5, 3, 1, "x3 y3 x4 y4 x0"),
+    (5, 2, 2, "x2 y2 y3 x0 y0"),
+    (4, 5, 3, "y5 x0 y0 x1"),
+])
+def test_bits_in_squares(unit_bits, block_bits, share_bits, order):
+    """Those of the processing element above the square's, those of its units from the lowest."""
+    interlace = Interlace(unit_bits, 64, 64, block_bits=block_bits, share_bits=share_bits)
+    assert " ".join(f"{axis}{bit}" for axis, bit in interlace.bit_order) == order
+
+
+@settings(deadline=None)
+@given(INTERLACES)
+def test_a_share_is_a_lattice_of_squares(interlace):
+    side = 1 << interlace.block_bits
+    across, down = (1 << bits for bits in interlace.stride_bits(interlace.share_bits))
+    assert across * down << interlace.share_bits == interlace.units
+    y, x = np.mgrid[: interlace.height, : interlace.width]
+    element = interlace.unit(x, y) >> interlace.share_bits
+    column, row = x // side % across, y // side % down
+    # One processing element for each place in the lattice.
+    pairs = {(int(e), int(c), int(r)) for e, c, r in zip(element.flat, column.flat, row.flat,
+                                                       strict=True)}
+    assert len(pairs) == len(np.unique(element)) == len(np.unique(row * across + column))
+
+
+def test_two_units_of_a_processing_element_alternate_along_its_rows():
+    interlace = Interlace(5, 64, 64, block_bits=3, share_bits=1)
+    assert [interlace.unit(x, 5) for x in range(17)] == [0, 1] * 4 + [16, 17] * 4 + [4]
+
+
+@settings(deadline=None)
+@given(INTERLACES)
+def test_scan_reads(interlace):
+    """A unit reads each of its pixels of a line once; ``pitch`` of them at worst."""
+    y, x = np.mgrid[: interlace.height, : interlace.width]
+    unit = interlace.unit(x, y)
+    assert max(np.bincount(line).max() for line in unit) == interlace.pitch
+    group = 1 << interlace.group_bits
+    for line in unit:
+        for start in range(0, interlace.width, group):
+            part = line[start:start + group]
+            assert len(set(part.tolist())) == len(part)
+    # Larger groups would hold two pixels of one unit.
+    first = unit[0, : 2 * group]
+    assert len(first) < 2 * group or len(set(first.tolist())) < len(first)
+
+
+@pytest.mark.parametrize(("block_bits", "share_bits", "pitch"), [
+    (0, 0, 128), (1, 1, 64), (3, 1, 64), (5, 1, 64), (1, 2, 64), (5, 3, 32)])
+def test_scan_reads_of_sixteen_processing_elements(block_bits, share_bits, pitch):
+    interlace = Interlace(4 + max(1, share_bits), 512, 512, block_bits=block_bits,
+                          share_bits=share_bits)
+    assert interlace.pitch == pitch
+
+
+@pytest.mark.parametrize(("unit_bits", "block_bits", "share_bits"), [
+    (3, 0, 1), (3, 1, 3), (2, 2, 3), (2, 2, -1)])
+def test_squares_hold_the_units_of_a_share(unit_bits, block_bits, share_bits):
+    with pytest.raises(ValueError, match="share_bits"):
+        Interlace(unit_bits, 8, 8, block_bits=block_bits, share_bits=share_bits)
 
 
 @pytest.mark.parametrize(("units", "words", "size", "shifts"), [

@@ -245,6 +245,20 @@ def test_an_unsupported_number_of_units_is_refused_and_does_not_hang(total, seed
     assert [operation for _, operation, _ in run.cage.packets] == [Operation.SURVEY]
 
 
+@pytest.mark.parametrize("domains", [[(0, 2), (2, 1), (3, 1)], [(0, 0), (0, 2), (2, 2)],
+                                     [(0, 1), (1, 3)], [(0, 4)]])
+def test_unequal_shares_of_squares_are_refused(domains):
+    """Cards for two units a processing element; as found, it does not draw."""
+    fault = (ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)
+    for block in (1, 4):
+        configuration = small_machine("PMMPMM", block=block)
+        booted = boot_responses(configuration, domains)
+        run = Run(configuration, [commands.frame_start((1, 2, 3))], len(domains) + 3,
+                  domains=domains)
+        assert run.responses[:-1] == (booted if block == 1 else [*booted[:-1], fault])
+        assert bool(run.units.initialised) == (block == 1)
+
+
 @pytest.mark.parametrize("opcode", [0, Opcode.TRIANGLE, 7, 15])
 def test_unknown_commands_are_answered_and_passed_over(opcode):
     configuration = small_machine("PM")

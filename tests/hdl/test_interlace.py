@@ -115,6 +115,91 @@ def test_scan_address(picture, units):
     evaluate(dut, steps)
 
 
+#: Cards, side of the squares, units that the cage may hold instead.
+SQUARES = [("PM", 4, 16), ("PMM", 2, 16), ("PMMMM", 2, 16), ("PMM", 8, 8), ("PMMMM", 4, 8),
+           ("PM", 32, 4)]
+
+
+def squares(cards, block, units, picture):
+    """The machine, and the interlace that it settles on with so many units."""
+    width, height, words = picture
+    configuration = small_machine(cards, width, height, words=words, block=block,
+                                  maximum_units=units)
+    return configuration, interlace_for(
+        width, height, words=words, units=units, block_bits=configuration.square_bits,
+        share_bits=configuration.share_bits)
+
+
+@pytest.mark.parametrize("picture", PICTURES, ids=str)
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES)
+def test_pixels_in_squares(cards, block, units, picture):
+    """Address and scan, pixel by pixel: each lies in the word that is fetched before it is shown,
+    and no unit reads the scan more often than ``pitch`` says."""
+    configuration, interlace = squares(cards, block, units, picture)
+    where, scan = (PixelAddress(configuration=configuration),
+                   ScanAddress(configuration=configuration))
+
+    def pixels(ctx):
+        ctx.set(where.total, units)
+        places = set()
+        for y in range(interlace.height):
+            for x in range(interlace.width):
+                ctx.set(where.x, x)
+                ctx.set(where.y, y)
+                place = ctx.get(where.unit), ctx.get(where.address)
+                assert place == (interlace.unit(x, y), interlace.address(x, y))
+                places.add(place)
+        assert len(places) == interlace.width * interlace.height
+        assert ctx.get(where.words) == interlace.words
+        assert max(address for _, address in places) < interlace.words <= configuration.words
+
+    def lines(ctx):
+        ctx.set(scan.total, units)
+        for scan_y in range(configuration.height):
+            ctx.set(scan.y, scan_y)
+            held, reads = {}, [0] * units
+            for scan_x in range(configuration.width):
+                ctx.set(scan.x, scan_x)
+                place = scan_x >> interlace.x_shift, scan_y >> interlace.y_shift
+                for unit in range(units):
+                    ctx.set(scan.id, unit)
+                    if ctx.get(scan.fetch):
+                        held[unit] = ctx.get(scan.address)
+                        reads[unit] += 1
+                    assert ctx.get(scan.selected) == (unit == interlace.unit(*place))
+                assert held[interlace.unit(*place)] == interlace.address(*place)
+            assert max(reads) <= interlace.pitch
+
+    evaluate(where, pixels)
+    evaluate(scan, lines)
+
+
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES)
+def test_a_share_is_a_lattice_of_squares(cards, block, units):
+    configuration, interlace = squares(cards, block, units, (33, 17, 33 * 17))
+    dut = LatticeBlock(configuration=configuration)
+    share = 1 << configuration.share_bits
+
+    def steps(ctx):
+        ctx.set(dut.total, units)
+        seen = 0
+        for first in range(0, units, share):
+            ctx.set(dut.first, first)
+            ctx.set(dut.end, first + share)
+            assert ctx.get(dut.after) == first + share
+            owned = ctx.get(dut.lattice)
+            assert owned.x_mask + 1 == 1 << owned.x_stride_bits
+            for y in range(interlace.height):
+                for x in range(interlace.width):
+                    inside = (x // block & owned.x_mask == owned.x_offset
+                              and y // block & owned.y_mask == owned.y_offset)
+                    assert inside == (first <= interlace.unit(x, y) < first + share)
+                    seen += inside
+        assert seen == interlace.width * interlace.height
+
+    evaluate(dut, steps)
+
+
 def lattice(x_offset, y_offset, across, down, size=16):
     return {(x, y) for y in range(y_offset, size, down) for x in range(x_offset, size, across)}
 

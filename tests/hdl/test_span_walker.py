@@ -19,8 +19,9 @@ from cardcage.hdl.span_walker import SpanWalker
 
 
 def stride(interlace, units):
-    """Distances in x and y between the pixels of a block of ``units`` of the machine's units."""
-    axes = {1: "", 2: "y", 4: "xy", 8: "xyy", 16: "xyxy"}[interlace.units]
+    """Distances in x and y between the pixels of a block of ``units`` of the machine's units, or
+    between its squares, where processing elements interlace in these."""
+    axes = {1: "", 2: "y", 4: "xy", 8: "xyy", 16: "xyxy"}[interlace.units >> interlace.share_bits]
     fixed = axes[: (interlace.units // units).bit_length() - 1]
     return 1 << fixed.count("x"), 1 << fixed.count("y")
 
@@ -36,26 +37,30 @@ def blocks(first, end):
 
 
 def expected_spans(configuration, display_list, prepared, first, end):
-    """Runs (x, y, pixels, x stride), triangle by triangle, block by block, row by row."""
+    """Runs (x, y, pixels, x stride), triangle by triangle, block by block, row by row, and of a
+    row square by square."""
     interlace = configuration.interlace
     for index, primitive in enumerate(prepared.primitive):
         pixels = covered(display_list, primitive, interlace)
         for start, size in blocks(first, end):
             across, _ = stride(interlace, size)
-            rows = {}
+            in_squares = interlace.block_bits > 0 and across > 1
+            step = 1 if interlace.block_bits else across
+            runs = {}
             for x, y in sorted(pixels):
                 if start <= interlace.unit(x, y) < start + size:
-                    rows.setdefault(y, []).append(x)
-            for y in sorted(rows):
-                assert all(b - a == across for a, b in pairwise(rows[y])), "a hole in a run"
-                yield index, (rows[y][0], y, len(rows[y]), across)
+                    square = x >> interlace.block_bits if in_squares else 0
+                    runs.setdefault((y, square), []).append(x)
+            for (y, _), columns in sorted(runs.items()):
+                assert all(b - a == step for a, b in pairwise(columns)), "a hole in a run"
+                yield index, (columns[0], y, len(columns), step)
 
 
 def owned_rows(interlace, start, size, top, bottom):
     """Rows top … bottom - 1 on which the block has pixels."""
-    down = stride(interlace, size)[1]
-    offset = min(interlace.pixel(unit, 0)[1] for unit in range(start, start + size))
-    return [row for row in range(top, bottom) if (row - offset) % down == 0]
+    side, down = 1 << interlace.block_bits, stride(interlace, size)[1]
+    offset = interlace.pixel(start, 0)[1] // side
+    return [row for row in range(top, bottom) if (row // side - offset) % down == 0]
 
 
 def schedule(configuration, prepared, expected, first, end):
@@ -190,6 +195,40 @@ def test_latency_and_throughput(machine):
     spans, triangles = schedule(configuration, prepared, expected, first, end)
     assert [clock for clock, _ in found] == spans
     assert source.taken == triangles
+
+
+#: Cards, side of the squares, the share to walk, picture.
+IN_SQUARES = {
+    "one of two, rows only": ("2x(PMM)", 2, (2, 4), (13, 9)),
+    "first of four": ("4x(PM)", 2, (0, 1), (16, 9)),
+    "last of four, two units": ("4x(PMM)", 4, (6, 8), (19, 13)),
+    "one of eight": ("8x(PMM)", 2, (10, 12), (17, 16)),
+    "one of sixteen": ("16x(PM)", 2, (9, 10), (17, 16)),
+    "all": ("PMMMM", 4, (0, 4), (9, 8)),
+}
+
+
+@pytest.mark.parametrize("machine", IN_SQUARES)
+@pytest.mark.parametrize("seed", [None, 0, 1])
+def test_spans_in_squares(machine, seed):
+    """Row by row a span for each square; without pauses a span a clock, an empty row one too."""
+    cards, block, (first, end), (width, height) = IN_SQUARES[machine]
+    configuration = small_machine(cards, width, height, block=block)
+    display_list = random_triangles(f"{machine} {seed}", 40, width=width, height=height,
+                                    extreme=seed is not None)
+    pause = (no_pause,) * 2 if seed is None else (pauses(f"in {seed}"), pauses(f"out {seed}"))
+    prepared, expected, _, found = run(configuration, display_list, first, end, pause)
+    assert len(expected) > 5
+    if seed is not None:
+        return
+    clock, clocks = SETTLED + SpanWalker.latency, []
+    for index in range(len(prepared)):
+        for row in owned_rows(configuration.interlace, first, end - first,
+                              int(prepared.top[index]), int(prepared.bottom[index])):
+            spans = sum((number, y) == (index, row) for number, (_, y, _, _) in expected)
+            clocks += range(clock, clock + spans)
+            clock += max(1, spans)
+    assert [clock for clock, _ in found] == clocks
 
 
 def test_an_empty_domain_takes_a_clock_a_triangle_and_ends_each():

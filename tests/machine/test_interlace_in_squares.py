@@ -1,0 +1,62 @@
+"""Processing elements interlace in squares of pixels: the same picture, whatever their side."""
+
+
+import numpy as np
+import pytest
+from frames import draw, random_list, spans_twice
+
+from cardcage.golden.commands import Fault, ResponseKind
+from cardcage.golden.configuration import configure
+from cardcage.testbenches.engine import Job
+from cardcage.testbenches.pysim_engine import PysimEngine
+
+SIZE = {"width": 13, "height": 9}
+
+
+@pytest.mark.parametrize("cards", ["2x(PM)", "2x(PMM)", "4x(PMM)"])
+def test_the_same_picture_for_every_side(cards):
+    listed = random_list(cards.count("M") * 10 + int(cards[0]), 8, **SIZE)
+    simulations = {block: draw(listed, cards=cards, block=block) for block in (1, 2, 4, 8)}
+    for simulation in simulations.values():  # each is equal to golden already
+        np.testing.assert_array_equal(simulation.video, simulations[1].video)
+        np.testing.assert_array_equal(simulation.depth, simulations[1].depth)
+    # They are different machines all the same: the work falls differently.
+    work = {tuple(element.fragments for element in simulation.work)
+            for simulation in simulations.values()}
+    assert len(work) > 2, work
+
+
+@pytest.mark.parametrize(("width", "height", "cards", "block", "options"), [
+    (19, 6, "2x(PMMMM)", 4, {"memory_ports": 2}),
+    (7, 6, "2x(PM)", 2, {"setup": "hardware"}),
+    (9, 17, "PMM", 8, {}),
+    (7, 5, "2x(PMM)", 32, {}),  # the second has no pixel
+])
+def test_sizes_shares_and_sides(width, height, cards, block, options):
+    draw(random_list(block, 6, width=width, height=height), cards=cards, block=block, **options)
+
+
+def test_overdrawn_pixels_in_squares():
+    """Fragments follow one another on the same pixels, and in one unit of each square."""
+    draw(spans_twice(16, 8), cards="2x(PMM)", block=4)
+
+
+@pytest.mark.parametrize(("cards", "resolution"), [
+    ("4x(PMM)", (16, 16)), ("2x(PMM)", (16, 8)), ("PMM", (8, 8))])
+def test_boards_pulled_share_by_share(cards, resolution):
+    """Cards built for 8 units of 32 words."""
+    simulation = draw(random_list(5, 6, width=16, height=16), cards=cards, block=4, words=32,
+                      maximum_units=8)
+    assert (simulation.interlace.width, simulation.interlace.height) == resolution
+
+
+@pytest.mark.parametrize("cards", ["PMMPMP M", "PMMPMMMM PMM"])
+def test_shares_that_boards_pulled_made_unequal_are_refused(cards):
+    configuration = configure(random_list(1, 1), cards=cards, block=4, allow_orphans=True,
+                              maximum_units=8, clocks_per_pixel=2, fraction_bits=20)
+    elements = configuration.processing_elements
+    job = Job(configuration, commands=[1, 4], responses=elements + 1 + 3, maximum_cycles=2000)
+    responses = PysimEngine().run(job).responses
+    assert [kind for kind, _, _ in responses] == [
+        *[ResponseKind.DOMAIN] * elements, ResponseKind.UNITS, *[ResponseKind.ERROR] * 3]
+    assert responses[-1][1] == Fault.UNITS_UNSUPPORTED
