@@ -70,6 +70,14 @@ class Interlace:
         inside = [("xy"[place % 2], place // 2) for place in range(self.share_bits)]
         return (*order, *inside)
 
+    @property
+    def x_unit_bits(self) -> int:
+        return self.unit_mask("x").bit_count()
+
+    @property
+    def y_unit_bits(self) -> int:
+        return self.unit_mask("y").bit_count()
+
     def unit_mask(self, axis: str) -> int:
         """The bits of ``"x"`` or ``"y"`` that name the unit."""
         return sum(1 << bit for name, bit in self.bit_order if name == axis)

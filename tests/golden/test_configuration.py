@@ -51,7 +51,8 @@ def test_bad_fields(field, values):
 @pytest.mark.parametrize(("field", "values"), {
     "width": [1, 4096], "height": [1, 4096], "sub_bits": [1, 8], "depth_bits": [2, 32],
     "fraction_bits": [0, 64], "words": [1, MAXIMUM_WORDS], "maximum_units": [4, 4096],
-    "fifo_depth": [2, 4096], "block": [1, 32], "clocks_per_pixel": [2, 256], "shading": ["flat", "gouraud"],
+    "fifo_depth": [2, 4096], "block": [1, 32], "clocks_per_pixel": [2, 256],
+    "shading": ["flat", "gouraud"],
 }.items())
 def test_the_ends_of_every_range(field, values):
     for value in values:

@@ -186,6 +186,17 @@ def test_unit_numbers():
         assert documented.replace(NOTHING, "").split() == [f"{axis}{bit}" for axis, bit in order]
 
 
+def test_unit_numbers_in_squares():
+    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("units", "side")]
+    assert len(rows) == 4
+    for row in rows:
+        units, side, share = (int(row[name]).bit_length() - 1
+                              for name in ("units", "side", "units each"))
+        interlace = Interlace(units, 64, 64, block_bits=side, share_bits=share)
+        *_, documented = row.values()
+        assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
+
+
 def example():
     rows = table("vertex")
 
