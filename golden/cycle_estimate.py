@@ -1,43 +1,42 @@
 """About how many clocks a machine takes to draw a frame, without simulating it.
 
-A processing element walks each triangle row by row on the lattice of its own
-pixels, and each fragment takes its unit's one port for a read and, where it is
-visible, a write; or of two ports one clock.  A triangle takes it the longer of
+A processing element finds the rows of its pixels, one a clock, and each fragment
+takes its unit's one port for a read and, where it is visible, a write; or of two
+ports one clock.  The two go on side by side, so it takes the longer of
 
-    walk     its load, the lattice stride's bits, a clock a row
+    walk     the rows of all triangles whose bounding boxes hold a pixel of its lattice
     ports    the accesses of its fragments, slowed down by the scan's slots
 
-The frame takes what the busiest processing element takes.
+and the frame what the busiest processing element takes, or a clock for each
+triangle's broadcast.
 Where it errs: how often a fragment is visible is the average for a random order of
-drawing; one triangle's walk overlaps with the ports' work for the one before by a
-few rows only, and broadcasts wait for a full FIFO.
+drawing; and a processing element that is done with its triangles waits for others
+whose queues are full, and for the next ones.  ``cycle_model`` follows all that.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .cards import domains
 from .configuration import MachineConfiguration
-from .coverage import Spans, Triangles, spans
+from .coverage import Triangles
 from .display_list import DisplayList
+from .element_clocks import Pipeline, walks
 from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
-from .interlace import Interlace
+from .lattice_spans import lattice_blocks, lattice_spans
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-#: The span walker takes one to load a triangle, before the stride's bits and the rows.
-LOAD_CLOCKS = 1
-#: From the frame's start to the first triangle, from the last fragment to done.
-LATENCY_CLOCKS = 16
+PIPELINE = Pipeline()
+#: From the frame's start to the first fragment's read, from the last one to done.
+LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
 
 #: What is tried for a number of cycles: up to so many processing elements, each with so many units.
 MOST_ELEMENTS = 256
@@ -49,26 +48,17 @@ class CycleEstimate:
     """Clocks to draw one frame.
 
     ``draw``       float64, per processing element
+    ``broadcast``  for all triangles
     ``fragments``  int64, per processing element; exact
     """
 
     draw: Float64
+    broadcast: int
     fragments: Int64
 
     @property
     def total(self) -> int:
-        return round(float(self.draw.max(initial=0)) + LATENCY_CLOCKS)
-
-
-@dataclass(frozen=True)
-class _Block:
-    """An aligned power of two of units: a lattice of pixels, 2**bits apart, from an offset."""
-
-    element: int
-    x_offset: int
-    y_offset: int
-    x_bits: int
-    y_bits: int
+        return round(max(float(self.draw.max(initial=0)), self.broadcast) + LATENCY_CLOCKS)
 
 
 def estimate_cycles(configuration: MachineConfiguration,
@@ -77,28 +67,22 @@ def estimate_cycles(configuration: MachineConfiguration,
     interlace = configuration.interlace
     shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
     triangles = Triangles.of(display_list, Grid.of(display_list, **shifts))
-    shares = domains(configuration.cards)
-    blocks = [block for element, (first, count) in enumerate(shares)
-              for block in _blocks(element, first, first + count, interlace)]
+    blocks = lattice_blocks(configuration)
+    elements = configuration.processing_elements
     accesses, slots = 1.0, 0.0
     if configuration.memory_ports == 1:
         accesses += visible_share(depth_complexity(display_list, **shifts))
         slots = _scan_share(configuration)
-    draw, fragments = np.zeros(len(shares)), np.zeros(len(shares), np.int64)
-    runs = list(spans(triangles))
-    for x_bits, y_bits in sorted({(block.x_bits, block.y_bits) for block in blocks}):
-        # Units in turn along a row share its accesses; one fragment a clock at best.
-        in_turn = 1 << (interlace.x_unit_bits - x_bits)
-        clocks = max(1.0, accesses / in_turn) / (1 - slots)
-        walk = _walk(triangles, y_bits)
-        for x_offset in range(1 << x_bits):
-            covered = _covered(runs, len(triangles), x_offset, x_bits, y_bits)
-            work = np.maximum(walk, covered * clocks).sum(axis=0)
-            for block in blocks:
-                if (block.x_bits, block.y_bits, block.x_offset) == (x_bits, y_bits, x_offset):
-                    draw[block.element] += work[block.y_offset]
-                    fragments[block.element] += covered[:, block.y_offset].sum()
-    return CycleEstimate(draw, fragments)
+    x_bits = np.array([block.x_bits for block in blocks])
+    # Units in turn along a row share its accesses; one fragment a clock at best.
+    clocks = np.maximum(1.0, accesses / (1 << (interlace.x_unit_bits - x_bits))) / (1 - slots)
+    walked, drawn = np.zeros(elements), np.zeros(elements)
+    fragments = np.zeros(elements, np.int64)
+    for spans in lattice_spans(triangles, blocks):
+        walked += walks(blocks, elements, spans, PIPELINE)[1].sum(axis=0)
+        drawn += np.bincount(spans.element, spans.length * clocks[spans.block], elements)
+        fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
+    return CycleEstimate(np.maximum(walked, drawn), len(triangles), fragments)
 
 
 def visible_share(complexity: NDArray[np.int32]) -> float:
@@ -114,47 +98,12 @@ def visible_share(complexity: NDArray[np.int32]) -> float:
     return float((counts * written).sum()) / total if total else 0.0
 
 
-def _blocks(element: int, first: int, end: int, interlace: Interlace) -> Iterator[_Block]:
-    while first < end:
-        largest = (end - first).bit_length() - 1
-        aligned = (first & -first).bit_length() - 1 if first else largest
-        bits = min(largest, aligned)
-        x_bits, y_bits = interlace.stride_bits(bits)
-        x, y = interlace.pixel(first, 0)
-        yield _Block(element, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1), x_bits, y_bits)
-        first += 1 << bits
-
-
 def _scan_share(configuration: MachineConfiguration) -> float:
     """Of a unit's clocks, those in which the scan reads it."""
     interlace, timing = configuration.interlace, configuration.timing
     active = timing.horizontal_active * timing.vertical_active / timing.pixels
     groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
     return active / (groups << interlace.y_unit_bits)
-
-
-def _walk(triangles: Triangles, y_bits: int) -> Int64:
-    """(triangles, offsets in y): clocks to load a triangle and walk its rows; one at least."""
-    offset = np.arange(1 << y_bits)
-    top, bottom = triangles.top[:, np.newaxis], triangles.bottom[:, np.newaxis]
-    # Rows r of top … bottom-1 with r = offset modulo the stride.
-    rows = ((bottom - 1 - offset) >> y_bits) - ((top - 1 - offset) >> y_bits)
-    return np.asarray(LOAD_CLOCKS + y_bits + np.maximum(rows, 1))
-
-
-def _covered(runs: list[Spans], triangles: int, x_offset: int, x_bits: int,
-             y_bits: int) -> Int64:
-    """(triangles, offsets in y): pixels of each triangle on the lattices with this x offset."""
-    offsets = 1 << y_bits
-    covered = np.zeros(triangles * offsets, np.int64)
-    for part in runs:
-        last = part.first + part.length - 1
-        columns = ((last - x_offset) >> x_bits) - ((part.first - 1 - x_offset) >> x_bits)
-        place = part.triangle * offsets + (part.row & (offsets - 1))
-        begin = int(place.min(initial=0))
-        counts = np.bincount(place - begin, columns)
-        covered[begin:begin + len(counts)] += counts.astype(np.int64)
-    return covered.reshape(triangles, offsets)
 
 
 def cards_for_cycles(display_list: DisplayList, cycles: int, **fields: Any) -> str:

@@ -1,18 +1,16 @@
 """Clocks that a machine takes for a list of triangles, by model instead of simulation.
 
-A processing element is two servers in a row, with room for a few spans between
-them: the walker, which takes clocks for each triangle and each row, and the memory
-ports, which take clocks for each fragment.  Times of a span are sums and maxima of
-earlier times::
+A triangle costs a processing element clocks of its walker and clocks of its memory
+ports (``element_clocks``); the list is followed triangle by triangle, all elements at
+once::
 
-    walked[i] = max(walked[i-1] + rows between, begun[i-ahead] - lead)
-    begun[i]  = max(walked[i] + latency, begun[i-1] + clocks of span i-1)
+    load   = max(broadcast + queue, the load before + its walk)
+    drawn  = max(drawn before + draw, load + latency + alone)
 
-so what a triangle does to a processing element is a matrix over (max, +), whatever
-came before.  The matrices of all triangles and elements are made at once; then the
-broadcast of each triangle, which waits for the fullest FIFO, is followed through
-the list, all elements at once.  ``cycle_estimate`` is the rough and quick sum of
-the same parts.
+The walk is held up where the spans found ahead fill their places, and the broadcast
+where the queue of any element is full.  All rows of a triangle are thought to run
+ahead together; only of its last one is it asked whether there was a place.
+``cycle_estimate`` is the rough and quick sum of the same parts.
 
 Where a unit has one port, the clocks of a span are a model too: what reads, writes
 and the scan's slots come to on average.
@@ -22,6 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,48 +28,36 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
+from .element_clocks import ElementClocks, Pipeline, element_clocks
 from .grid import Grid
-from .lattice_spans import LatticeBlock, LatticeSpans, lattice_blocks, lattice_spans
+from .lattice_spans import lattice_blocks, lattice_spans
 from .port_clocks import PortClocks
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-
-@dataclass(frozen=True)
-class Pipeline:
-    """Facts of the processing element's pipeline, in clocks unless said otherwise.
-
-    ``broadcast``    from one broadcast to the next, at least
-    ``fifo``         from a broadcast to the walker's load, where that is idle
-    ``fifo_room``    from when the walker can load the next triangle until a place is free again
-    ``load``         the walker's, per block of units
-    ``stride``       per bit of the lattice's stride in y
-    ``row``          per lattice row
-    ``least_rows``   rows that a block is charged for, even if it has fewer
-    ``latency``      from a span's leaving the walker to its first fragment's read
-    ``spans_ahead``  a span leaves the walker when the one so many before it begins, or
-    ``lead``         so many clocks earlier
-    ``finish``       from the read of the last fragment until the machine is seen to be done
-    """
-
-    broadcast: int = 1
-    fifo: int = 2
-    fifo_room: int = 0
-    load: int = 1
-    stride: int = 1
-    row: int = 1
-    least_rows: int = 1
-    latency: int = 4
-    spans_ahead: int = 2
-    lead: int = 2
-    finish: int = 5
-
-
 PIPELINE = Pipeline()
 
-#: Earlier than any time that counts, and exact as a double with all that is added to it.
+#: Long before all that counts.
 _NEVER = -1e15
+
+
+@dataclass(frozen=True)
+class SetupTiming:
+    """A set-up in hardware, in clocks unless said otherwise.
+
+    ``interval``  between two triangles that may cover a pixel; others take one each
+    ``latency``   from a triangle to its broadcast
+    ``waiting``   triangles that can wait to be set up
+    ``inside``    triangles that can be in it, prepared ones that wait included
+    ``leaving``   between two broadcasts of waiting ones
+    """
+
+    interval: int
+    latency: int = 0
+    waiting: int = 16
+    inside: int = 1
+    leaving: int = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,12 +66,14 @@ class CyclePrediction:
 
     ``finished``          float64 (n,): clocks from the first triangle taken until the machine is
                           done, were this triangle the last; of those that may cover a pixel
-    ``broadcast_bound``   clocks to set up and send all of them at best
+    ``setup_bound``       clocks to set up all of them at best; 0 where the host has done it
+    ``broadcast_bound``   clocks to send all of them at best
     ``element_bound``     float64 (elements,): clocks in which each processing element alone, all
                           triangles at hand, must walk, and in which it must draw; the greater
     """
 
     finished: Float64
+    setup_bound: float
     broadcast_bound: float
     element_bound: Float64
 
@@ -94,29 +83,31 @@ class CyclePrediction:
         return float(self.finished[-1]) if len(self.finished) else 0.0
 
     @property
-    def bound(self) -> float:
-        """No machine of these parts is faster."""
-        return max(self.broadcast_bound, float(self.element_bound.max(initial=0)))
+    def bounds(self) -> dict[str, float]:
+        """What no machine of these parts is faster than, by name."""
+        return {"busiest element": float(self.element_bound.max(initial=0)),
+                "set-up": self.setup_bound, "broadcast": self.broadcast_bound}
 
     @property
     def binding(self) -> str:
-        """What sets the bound: set-up and ``broadcast``, or the ``busiest element``."""
-        element = float(self.element_bound.max(initial=0))
-        return "broadcast" if self.broadcast_bound >= element else "busiest element"
+        """The greatest of the bounds."""
+        return max(self.bounds, key=self.bounds.__getitem__)
+
+    @property
+    def bound(self) -> float:
+        return self.bounds[self.binding]
 
 
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
-                   pipeline: Pipeline = PIPELINE,
-                   fifo_depths: Sequence[int] | None = None,
+                   pipeline: Pipeline = PIPELINE, fifo_depths: Sequence[int] | None = None,
                    after: DisplayList | None = None,
-                   setup_clocks: int = 1) -> list[CyclePrediction]:
+                   setup: SetupTiming | None = None) -> list[CyclePrediction]:
     """The clocks for ``display_list``, for each depth of the FIFOs; by default the machine's own.
 
-    ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup_clocks``
-    is what the machine's own set-up takes for a triangle, busy with others before and after.
-    Precision does not matter to the clocks.
+    ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
+    machine's own set-up, or None where the triangles come prepared.  Precision does not matter to
+    the clocks.
     """
-    interval = max(pipeline.broadcast, setup_clocks)
     interlace = configuration.interlace
     triangles = Triangles.of(display_list,
                              Grid.of(display_list, interlace.x_shift, interlace.y_shift))
@@ -124,95 +115,116 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     elements = configuration.processing_elements
     depths = [configuration.fifo_depth] if fifo_depths is None else list(fifo_depths)
     ports = PortClocks(configuration, display_list, triangles, after)
-    broadcast = _Broadcast(elements, depths, pipeline, interval, len(triangles))
+    cage = _Cage(elements, depths, pipeline)
+    arrivals = _Prepared() if setup is None else _SetUp(setup, triangles.primitive, len(depths))
+    finished = np.zeros((len(depths), len(triangles)))
     bound = np.zeros((2, elements))
     for spans in lattice_spans(triangles, blocks):
-        offsets, walk = _walk(blocks, elements, spans, pipeline)
-        clocks = ports.of(spans)
-        bound += [walk.sum(axis=0), np.bincount(spans.element, clocks, elements)]
-        broadcast.follow(spans.begin, _matrices(spans, offsets, walk, clocks, pipeline))
-    return [CyclePrediction(finished, float(interval * len(triangles)), bound.max(axis=0))
-            for finished in broadcast.finished]
+        clocks = element_clocks(blocks, elements, spans, ports.of(spans), pipeline)
+        bound += [np.bincount(clocks.element, sums, elements) for sums in (clocks.walk,
+                                                                           clocks.draw)]
+        bounds = np.searchsorted(clocks.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
+        for place, (first, end) in enumerate(pairwise(bounds)):
+            number = spans.begin + place
+            sent = cage.broadcast(arrivals.arrival(number))
+            arrivals.leaves(number, sent)
+            cage.take(clocks, slice(first, end))
+            finished[:, number] = cage.finished
+    triangles_bound = float(len(triangles))
+    setup_bound = 0.0
+    if setup is not None:
+        setup_bound = max(setup.interval * triangles_bound, float(display_list.triangles))
+    return [CyclePrediction(done, setup_bound, triangles_bound, bound.max(axis=0))
+            for done in finished]
 
 
-def _walk(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
-          pipeline: Pipeline) -> tuple[Float64, Float64]:
-    """Clocks from a triangle's load until each span may leave the walker, (spans,), and until
-    the next triangle's load, (triangles, elements)."""
-    walk = np.zeros((spans.end - spans.begin, elements))
-    offsets = np.zeros(len(spans.triangle))
-    for number, block in enumerate(blocks):
-        load = pipeline.load + pipeline.stride * block.y_bits
-        here = np.flatnonzero((spans.element == block.element) & (spans.place == block.place))
-        offsets[here] = (walk[spans.triangle[here], block.element] + load
-                         + pipeline.row * spans.step[here])
-        walk[:, block.element] += load + pipeline.row * np.maximum(spans.rows[:, number],
-                                                                   pipeline.least_rows)
-    return offsets, walk
+class _Prepared:
+    """Triangles that are always at hand."""
+
+    def arrival(self, number: int) -> Float64:
+        return np.zeros(1)
+
+    def leaves(self, number: int, sent: Float64) -> None:
+        pass
 
 
-def _matrices(spans: LatticeSpans, offsets: Float64, walk: Float64, clocks: Float64,
-              pipeline: Pipeline) -> Float64:
-    """(triangles, state, state, elements): a triangle's effect, over (max, +), from state to state.
+class _SetUp:
+    """When the set-up has each triangle ready; for several depths of the FIFOs at once."""
 
-    The state is when the walker can load, when the ports are free, and when each of the last
-    ``spans_ahead`` spans began, the newest first.
-    """
-    triangles, elements = walk.shape
-    size = 2 + pipeline.spans_ahead
-    group = spans.triangle * elements + spans.element
-    counts = np.bincount(group, minlength=triangles * elements)
-    starts = np.cumsum(counts) - counts
-    state = np.full((triangles * elements, size, size), _NEVER)
-    state[:, np.arange(size), np.arange(size)] = 0
-    at = np.zeros(triangles * elements)  # where the walker is, after the load
-    most_first = np.argsort(-counts, kind="stable")
-    remaining = np.searchsorted(-counts[most_first], -np.arange(counts.max(initial=0)), "left")
-    for turn, groups in enumerate(remaining.tolist()):
-        chosen = most_first[:groups]
-        span = starts[chosen] + turn
-        before = state[chosen]
-        walker, ports, begun = before[:, 0], before[:, 1], before[:, 2:]
-        walker = np.maximum(walker + (offsets[span] - at[chosen])[:, np.newaxis],
-                            begun[:, -1] - pipeline.lead)
-        begins = np.maximum(walker + pipeline.latency, ports)
-        state[chosen] = np.concatenate([
-            walker[:, np.newaxis], (begins + clocks[span][:, np.newaxis])[:, np.newaxis],
-            begins[:, np.newaxis], begun[:, :-1]], axis=1)
-        at[chosen] = offsets[span]
-    state[:, 0] += (walk.reshape(-1) - at)[:, np.newaxis]
-    # Elements last: what is done for all of them at once lies together.
-    return np.ascontiguousarray(state.reshape(triangles, elements, size, size)
-                                .transpose(0, 3, 2, 1))
+    def __init__(self, timing: SetupTiming, primitive: Int64, depths: int) -> None:
+        self._timing = timing
+        #: Clocks that it takes to offer each triangle, and those before it that cover no pixel.
+        self._offer = np.diff(primitive, prepend=-1)
+        self._offered = np.full(depths, -1.0)
+        self._entered = np.full((len(primitive), depths), _NEVER)
+        self._sent = np.full((len(primitive), depths), _NEVER)
+
+    def arrival(self, number: int) -> Float64:
+        timing, entered, sent = self._timing, self._entered, self._sent
+
+        def earlier(times: Float64, places: int) -> Float64:
+            return np.asarray(times[number - places] if number >= places else _NEVER)
+
+        self._offered = np.maximum(self._offered + self._offer[number],
+                                   earlier(entered, timing.waiting))
+        entered[number] = np.maximum.reduce(np.broadcast_arrays(
+            self._offered, earlier(entered, 1) + timing.interval, earlier(sent, timing.inside)))
+        return np.asarray(np.maximum(entered[number] + timing.latency,
+                                     earlier(sent, 1) + timing.leaving))
+
+    def leaves(self, number: int, sent: Float64) -> None:
+        self._sent[number] = sent
 
 
-class _Broadcast:
-    """Follows a list through the FIFOs, for several depths at once."""
+class _Cage:
+    """The broadcast and all processing elements, for several depths of the FIFOs at once."""
 
-    def __init__(self, elements: int, depths: list[int], pipeline: Pipeline,
-                 interval: int, triangles: int) -> None:
+    def __init__(self, elements: int, depths: list[int], pipeline: Pipeline) -> None:
         self._pipeline = pipeline
-        self._interval = interval
-        self._depths = np.array(depths)
-        # Every processing element idle for long.
-        self._state = np.full((len(depths), 2 + pipeline.spans_ahead, elements), _NEVER)
-        self._sent = np.full(len(depths), -float(interval))
-        #: When the last processing element was through with the walk of a triangle.
-        self._walked = np.full((len(depths), triangles), _NEVER)
-        self.finished = np.zeros((len(depths), triangles))
+        never = np.full((len(depths), elements), _NEVER)
+        self._load, self._drawn, self._room = never, never.copy(), never.copy()
+        self._sent = np.full(len(depths), -1.0)
+        #: From when on all have a place: with, and without the last triangle that was sent.
+        self._all_room = self._earlier_room = np.full(len(depths), _NEVER)
+        # When the places of each element's triangles became free, in a ring.
+        self._places = np.array(depths)[:, np.newaxis] - 1
+        self._freed = np.full((len(depths), elements, max(depths)), _NEVER)
+        self._taken = np.zeros(elements, np.int64)
+        self._lines = np.arange(len(depths))[:, np.newaxis]
+        self.finished = np.zeros(len(depths))
 
-    def follow(self, begin: int, matrices: Float64) -> None:
-        """Triangles from ``begin`` on; see ``_matrices``."""
-        pipeline, state, sent = self._pipeline, self._state, self._sent
-        lines = np.arange(len(self._depths))
-        for number, matrix in enumerate(matrices, begin):
-            place = number - self._depths
-            room = np.where(place >= 0, self._walked[lines, np.maximum(place, 0)]
-                            + pipeline.fifo_room, 0)
-            sent = np.maximum(sent + self._interval, room)
-            np.maximum(state[:, 0], (sent + pipeline.fifo)[:, np.newaxis], out=state[:, 0])
-            state = (matrix + state[:, :, np.newaxis]).max(axis=1)
-            last = state[:, :2].max(axis=2)
-            self._walked[:, number] = last[:, 0]
-            self.finished[:, number] = last[:, 1] + pipeline.finish
-        self._state, self._sent = state, sent
+    def broadcast(self, arrival: Float64) -> Float64:
+        """When a triangle that is ready at ``arrival`` is sent.
+
+        A queue is ready while it has a place more than it shows; what was sent a clock ago does
+        not show yet.
+        """
+        following = self._sent + 1
+        at_once = (arrival <= following) & (self._earlier_room <= following)
+        self._sent = np.where(at_once, following, np.maximum(
+            np.maximum(arrival, following + 1), self._all_room))
+        self._earlier_room = self._all_room
+        return self._sent
+
+    def take(self, clocks: ElementClocks, kept: slice) -> None:
+        """The triangle that was sent; ``kept`` are its entries."""
+        pipeline, element = self._pipeline, clocks.element[kept]
+        if not len(element):
+            return
+        load = np.maximum(self._load[:, element], self._sent[:, np.newaxis] + pipeline.queue)
+        walked = load + clocks.walk[kept]
+        drawn = np.maximum(self._drawn[:, element] + clocks.draw[kept],
+                           load + pipeline.latency + clocks.alone[kept])
+        self._drawn[:, element] = drawn
+        self._load[:, element] = np.maximum(walked, drawn - clocks.held[kept])
+        size = self._freed.shape[2]
+        taken = self._taken[element]
+        self._freed[:, element, taken % size] = 1 + np.maximum(
+            walked + pipeline.found, drawn - clocks.started[kept])
+        self._taken[element] = taken = taken + 1
+        # The place that the next triangle takes is that of so many triangles ago.
+        self._room[:, element] = np.where(
+            taken >= self._places,
+            self._freed[self._lines, element, (taken - self._places) % size], _NEVER)
+        self._all_room = self._room.max(axis=1)
+        self.finished = np.maximum(self.finished, drawn.max(axis=1) + pipeline.finish)

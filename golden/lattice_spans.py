@@ -1,8 +1,8 @@
 """What of each triangle falls to each processing element, as its walker meets it.
 
 A domain is walked as aligned blocks of units; the pixels of a block form a
-lattice, so a triangle's covered columns in a row are cut into one span for each
-lattice that has pixels in that row.
+lattice, of single pixels or of squares of them, so a triangle's covered columns in
+a row are cut up among the lattices that have pixels in that row.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from .configuration import MachineConfiguration
 from .coverage import Spans, Triangles, spans
 from .interlace import Interlace
 
+Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
 
 #: Rows of triangles cut up at once.
@@ -26,7 +27,8 @@ ROW_LIMIT = 1 << 12
 
 @dataclass(frozen=True)
 class LatticeBlock:
-    """An aligned power of two of units: pixels 2**bits apart in x and y, from an offset.
+    """An aligned power of two of units: squares ``2**square_bits`` pixels wide, ``2**x_bits`` and
+    ``2**y_bits`` squares apart, from an offset in squares.
 
     ``place`` counts the blocks of one processing element, ``element``.
     """
@@ -37,6 +39,7 @@ class LatticeBlock:
     y_offset: int
     x_bits: int
     y_bits: int
+    square_bits: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,48 +49,54 @@ class LatticeSpans:
 
     ``triangle``  counted from ``begin``
     ``element``   processing element
-    ``place``     block of that element
+    ``block``     index in the list of blocks
     ``step``      lattice rows that lie in the triangle above this one
     ``row``       row of the picture
     ``length``    pixels
-    ``source``    index of the whole span in ``whole``, the covered columns it is cut from
+    ``squares``   squares of the lattice that they lie in; 1 where it is one of single pixels
     ``x_offset`` ``x_bits`` ``y_bits``  of the block
+    ``source``    index of the whole span in ``whole``, the covered columns it is cut from
     ``rows``      int64 (end - begin, blocks): lattice rows of each triangle in each block
+    ``met``       bool, alike: the triangle's bounding box holds a pixel of the block
     """
 
     begin: int
     end: int
     triangle: Int64
     element: Int64
-    place: Int64
+    block: Int64
     step: Int64
     row: Int64
     length: Int64
-    source: Int64
+    squares: Int64
     x_offset: Int64
     x_bits: Int64
     y_bits: Int64
+    source: Int64
     whole: Spans
     rows: Int64
+    met: Bool
 
 
 def lattice_blocks(configuration: MachineConfiguration) -> list[LatticeBlock]:
     """The blocks of every processing element, in the order in which they are walked."""
     interlace = configuration.interlace
     return [block for element, (first, count) in enumerate(domains(configuration.cards))
-            for block in _blocks(element, first, first + count, interlace)]
+            for block in _blocks(element, first, first + count, interlace,
+                                 configuration.square_bits)]
 
 
-def _blocks(element: int, first: int, end: int, interlace: Interlace) -> Iterator[LatticeBlock]:
+def _blocks(element: int, first: int, end: int, interlace: Interlace,
+            square_bits: int) -> Iterator[LatticeBlock]:
     place = 0
     while first < end:
         largest = (end - first).bit_length() - 1
         aligned = (first & -first).bit_length() - 1 if first else largest
         bits = min(largest, aligned)
         x_bits, y_bits = interlace.stride_bits(bits)
-        x, y = interlace.pixel(first, 0)
+        x, y = (position >> square_bits for position in interlace.pixel(first, 0))
         yield LatticeBlock(element, place, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1),
-                           x_bits, y_bits)
+                           x_bits, y_bits, square_bits)
         first += 1 << bits
         place += 1
 
@@ -106,36 +115,54 @@ def lattice_spans(triangles: Triangles, blocks: list[LatticeBlock],
         yield _cut(triangles, blocks, begin, len(triangles), Spans(none, none, none, none))
 
 
+def _before(position: Int64, offset: Int64 | int, bits: Int64 | int, square_bits: int) -> Int64:
+    """How many owned columns (or rows) there are from 0 up to ``position``, itself left out."""
+    square = position >> square_bits
+    ahead = (offset - square) & ((1 << bits) - 1)
+    squares = -((offset - square) >> bits)
+    within = position & ((1 << square_bits) - 1)
+    return np.asarray((squares << square_bits) + np.where(ahead == 0, within, 0))
+
+
 def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
          whole: Spans) -> LatticeSpans:
-    y_bits = np.array([block.y_bits for block in blocks])
-    y_offset = np.array([block.y_offset for block in blocks])
-    top, bottom = (rows[begin:end, np.newaxis].astype(np.int64)
-                   for rows in (triangles.top, triangles.bottom))
-    # Lattice rows before a row r are those of r - offset over the stride, rounded up.
-    above = -((y_offset - top) >> y_bits)
-    rows = -((y_offset - bottom) >> y_bits) - above
+    facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
+             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits")}
+    square_bits = blocks[0].square_bits
+    left, right, top, bottom = (
+        edge[begin:end, np.newaxis].astype(np.int64)
+        for edge in (triangles.left, triangles.right, triangles.top, triangles.bottom))
+    in_x, in_y = ((facts[f"{axis}_offset"], facts[f"{axis}_bits"], square_bits) for axis in "xy")
+    above = _before(top, *in_y)
+    rows = _before(bottom, *in_y) - above
+    met = (rows > 0) & (_before(right, *in_x) > _before(left, *in_x))
+
     parts = []
-    last = whole.first + whole.length - 1
-    for x_bits, y_stride in sorted({(block.x_bits, block.y_bits) for block in blocks}):
+    beyond = whole.first + whole.length
+    for x_bits, y_bits in sorted({(block.x_bits, block.y_bits) for block in blocks}):
         for x_offset in range(1 << x_bits):
-            by_row = np.full(1 << y_stride, -1)
+            by_row = np.full(1 << y_bits, -1)
             for place, block in enumerate(blocks):
-                if (block.x_bits, block.y_bits, block.x_offset) == (x_bits, y_stride, x_offset):
+                if (block.x_bits, block.y_bits, block.x_offset) == (x_bits, y_bits, x_offset):
                     by_row[block.y_offset] = place
-            block_number = by_row[whole.row & ((1 << y_stride) - 1)]
-            length = ((last - x_offset) >> x_bits) - ((whole.first - 1 - x_offset) >> x_bits)
-            found = np.flatnonzero((length > 0) & (block_number >= 0))
-            parts.append((found, block_number[found], length[found]))
-    source, number, length = (np.concatenate(part) for part in zip(*parts, strict=True))
+            length, squares = (
+                _before(last, x_offset, x_bits, bits) - _before(first, x_offset, x_bits, bits)
+                for first, last, bits in (
+                    (whole.first, beyond, square_bits),
+                    (whole.first >> square_bits, ((beyond - 1) >> square_bits) + 1, 0)))
+            if not square_bits or not x_bits:  # one span, whatever it crosses
+                squares = np.ones_like(length)
+            owner = by_row[(whole.row >> square_bits) & ((1 << y_bits) - 1)]
+            found = np.flatnonzero((length > 0) & (owner >= 0))
+            parts.append((found, owner[found], length[found], squares[found]))
+    source, number, length, squares = (np.concatenate(part) for part in zip(*parts, strict=True))
     triangle = whole.triangle[source] - begin
     order = np.lexsort((whole.row[source], number, triangle))  # blocks count by element
-    source, number, length, triangle = (array[order] for array in (source, number, length,
-                                                                   triangle))
+    source, number, triangle = source[order], number[order], triangle[order]
     row = whole.row[source]
-    facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
-             for name in ("element", "place", "x_offset", "x_bits", "y_bits")}
+    of_block = {name: values[number] for name, values in facts.items()}
+    step = _before(row, of_block["y_offset"], of_block["y_bits"], square_bits)
     return LatticeSpans(
-        begin=begin, end=end, triangle=triangle, row=row, length=length, source=source,
-        step=-((y_offset[number] - row) >> y_bits[number]) - above[triangle, number],
-        whole=whole, rows=rows, **{name: array[number] for name, array in facts.items()})
+        begin, end, triangle, of_block["element"], number, step - above[triangle, number], row,
+        length[order], squares[order], of_block["x_offset"], of_block["x_bits"],
+        of_block["y_bits"], source, whole, rows, met)

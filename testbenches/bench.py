@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ..golden.cycle_model import predict_cycles
+from ..golden.cycle_model import SetupTiming, predict_cycles
 from ..hdl.triangle_setup import TriangleSetup
 from .bench_cases import CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
@@ -80,11 +80,12 @@ def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
 
 def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
     configuration = machine.configuration
-    setup_clocks = 1
+    setup = None
     if configuration.setup == "hardware":
-        setup_clocks = TriangleSetup(configuration=configuration).interval
-    [once] = predict_cycles(configuration, case.once, setup_clocks=setup_clocks)
-    [twice] = predict_cycles(configuration, case.twice, after=case.once, setup_clocks=setup_clocks)
+        unit = TriangleSetup(configuration=configuration)
+        setup = SetupTiming(interval=unit.interval, latency=unit.latency, inside=unit.depth)
+    [once] = predict_cycles(configuration, case.once, setup=setup)
+    [twice] = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
                     predicted=twice.cycles - once.cycles, bound=twice.bound / 2,
                     binding=twice.binding)

@@ -1,5 +1,7 @@
 """Triangles sent as vertices: the frames, pixel for pixel, of triangles that the host prepared."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from frames import check, check_bit_true, joined, random_list, triangles
@@ -7,6 +9,7 @@ from frames import check, check_bit_true, joined, random_list, triangles
 from cardcage.golden.commands import OPCODE_BITS, Opcode
 from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL, configure
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.setup import prepare
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_commands, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine
@@ -49,12 +52,33 @@ def test_frames_in_pysim(cards, fields):
     check_bit_true(configuration, display_list, vertices)
 
 
+def one_pixel_triangles(display_list, count):
+    """Triangles anywhere that cover one pixel each, in the formats of ``display_list``."""
+    source = np.random.default_rng(count)
+    pixel = source.integers(0, 64, (count, 1, 2))
+    position = (pixel + np.array([[0.1, 0.1], [0.9, 0.2], [0.2, 0.95]])) * 2**display_list.sub_bits
+    color = source.integers(0, 256, (count, 1, 3), np.uint8).repeat(3, axis=1)
+    return replace(display_list, position=position.round().astype(np.int32), color=color,
+                   depth=source.integers(0, display_list.depth_limit + 1, (count, 3)))
+
+
 def test_the_teapot_in_verilator():
-    """And fast set-up is done before the processing elements need the next triangle."""
+    """And fast set-up keeps up: a triangle every three clocks, beside the drawing."""
     display_list = make_display_list("teapot:tessellation=3", width=64, height=64,
                                      shading="flat").display_list
-    configuration, vertices, prepared = both_ways(
-        display_list, VerilatorEngine(), cards="2x(PMM)", clocks_per_pixel=2)
+    engine = VerilatorEngine()
+    configuration, vertices, prepared = both_ways(display_list, engine, cards="2x(PMM)",
+                                                  clocks_per_pixel=2)
     assert configuration.shading == "flat"
     check(configuration, display_list, vertices)
-    assert vertices.draw_cycles < prepared.draw_cycles + 200
+    # What it takes for all of them, one after the other, is mostly hidden.
+    divisions = 3 * len(prepare(display_list, fraction_bits=configuration.fraction_bits))
+    assert vertices.draw_cycles < prepared.draw_cycles + divisions / 2
+
+    clocks = {}
+    for count in (200, 400):
+        small = one_pixel_triangles(display_list, count)
+        simulation = simulate(configuration, small, engine)
+        check(configuration, small, simulation)
+        clocks[count] = simulation.draw_cycles
+    assert (clocks[400] - clocks[200]) / 200 == pytest.approx(3, abs=0.05)

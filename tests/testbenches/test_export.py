@@ -94,6 +94,16 @@ def test_a_component():
     assert [memory["words"] for memory in facts["memories"]] == [256]
 
 
+def test_memory_ports():
+    """Three RAMs a unit where it has two ports, one where it has one."""
+    for ports, memories in (("1", [(84, 1)]), ("2", [(28, 3)])):
+        assert run(*TINY, "--memory-ports", ports, "-o", "machine.v").exit_code == 0
+        facts = json.loads(Path("machine.json").read_text())
+        assert facts["configuration"]["memory_ports"] == int(ports)
+        assert [(memory["bits"], memory["instances"]) for memory in facts["memories"]
+                if memory["words"] == 256] == memories
+
+
 @pytest.mark.parametrize("arguments", [[*TINY], [SCENE, *TINY], [*TINY, "--component", "survey"]])
 def test_deterministic(arguments):
     """In this process and in one that hashes differently."""
