@@ -147,7 +147,8 @@ class PortClocks:
         whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
         written = np.zeros(len(spans.source), np.int64)
         for bits in np.unique(spans.x_bits).tolist():
-            key = (whole << bits) | (drawn.x & ((1 << bits) - 1))
+            column = drawn.x.astype(np.int64) >> self._configuration.square_bits
+            key = (whole << bits) | (column & ((1 << bits) - 1))
             counts = np.bincount(key, visible, len(spans.whole) << bits).astype(np.int64)
             here = np.flatnonzero(spans.x_bits == bits)
             written[here] = counts[(spans.source[here] << bits) | spans.x_offset[here]]

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import product
 
 from ..golden.configuration import MachineConfiguration
-from ..golden.errors import InputError
 from ..golden.plan import full_machine
 from .bench_cases import DEPTH_BITS, SIZE, SUB_BITS
 from .machine_options import SETUPS
 
 CLOCKS_PER_PIXEL = 4
-
-_FIELDS = {field.name for field in fields(MachineConfiguration)}
-
 
 @dataclass(frozen=True)
 class MachineAxes:
@@ -40,7 +36,7 @@ class MachineAxes:
 #: Of ``cardcage bench --all``.
 ALL_MACHINES = MachineAxes(
     elements=(1, 4, 16), units=(1, 2), ports=(1, 2), setups=tuple(SETUPS),
-    blocks=(1, 8) if "block" in _FIELDS else (1,))
+    blocks=(1, 4))
 
 
 @dataclass(frozen=True)
@@ -81,11 +77,9 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
 
 def _machine(elements: int, units: int, ports: int, setup: str, block: int,
              fifo: int) -> BenchMachine:
-    if block != 1 and "block" not in _FIELDS:
-        raise InputError("--block: this release interlaces pixel by pixel only")
     configuration = full_machine(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        memory_ports=ports, **SETUPS[setup], **({"block": block} if "block" in _FIELDS else {}))
+        memory_ports=ports, block=block, **SETUPS[setup])
     return BenchMachine(elements, units, ports, setup, block, fifo, configuration)
