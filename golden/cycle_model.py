@@ -69,13 +69,16 @@ class CyclePrediction:
     ``setup_bound``       clocks to set up all of them at best; 0 where the host has done it
     ``broadcast_bound``   clocks to send all of them at best
     ``element_bound``     float64 (elements,): clocks in which each processing element alone, all
-                          triangles at hand, must walk, and in which it must draw; the greater
+                          triangles at hand, finds its rows, and in which it has a fragment each;
+                          the greater
+    ``port_bound``        clocks of the busiest unit's one port; 0 with two
     """
 
     finished: Float64
     setup_bound: float
     broadcast_bound: float
     element_bound: Float64
+    port_bound: float
 
     @property
     def cycles(self) -> float:
@@ -86,7 +89,8 @@ class CyclePrediction:
     def bounds(self) -> dict[str, float]:
         """What no machine of these parts is faster than, by name."""
         return {"busiest element": float(self.element_bound.max(initial=0)),
-                "set-up": self.setup_bound, "broadcast": self.broadcast_bound}
+                "busiest port": self.port_bound, "set-up": self.setup_bound,
+                "broadcast": self.broadcast_bound}
 
     @property
     def binding(self) -> str:
@@ -119,8 +123,8 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     bound = np.zeros((2, elements))
     for spans in lattice_spans(triangles, blocks):
         clocks = element_clocks(blocks, elements, spans, ports.of(spans), pipeline)
-        bound += [np.bincount(clocks.element, sums, elements)
-                  for sums in (clocks.walk, clocks.draw)]
+        bound += [np.bincount(clocks.element, clocks.walk, elements),
+                  np.bincount(spans.element, spans.length, elements)]
         costs = list(zip(*(getattr(clocks, name).tolist() for name in (
             "element", "walk", "draw", "alone", "held", "started")), strict=True))
         places = np.searchsorted(clocks.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
@@ -133,7 +137,8 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
             finished.append(cage.finished)
     kept = len(triangles)
     setup_bound = 0 if setup is None else max(setup.interval * kept, display_list.triangles)
-    return CyclePrediction(np.array(finished), float(setup_bound), float(kept), bound.max(axis=0))
+    return CyclePrediction(np.array(finished), float(setup_bound), float(kept), bound.max(axis=0),
+                           ports.bound)
 
 
 class _SetUp:

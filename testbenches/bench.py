@@ -22,8 +22,8 @@ class BenchRow:
 
     ``measured``    None where only the model was asked
     ``predicted``   T(2n) - T(n) by the cycle model
-    ``bound``       clocks below which n triangles cannot come, by broadcast or the busiest element
-    ``binding``     which of the two it is
+    ``bound``       clocks below which n triangles cannot come: ``CyclePrediction.bounds``
+    ``binding``     which of those it is
     """
 
     machine: BenchMachine

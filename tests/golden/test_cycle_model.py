@@ -103,6 +103,7 @@ def test_written_fragments():
     np.testing.assert_array_equal(nearest, draw(listed).depth)
     assert accesses < 2 * len(drawn), "some fragments are hidden"
     assert total == pytest.approx(accesses * 256 / 255, rel=1e-3)
+    assert ports.bound == pytest.approx(accesses, rel=0.01)
 
 
 @pytest.mark.parametrize("units", [1, 2, 4])
@@ -268,7 +269,8 @@ def test_parts_of_a_list_hang_together(cards, monkeypatch):
 def test_the_binding_bound():
     listed = scene(4)
     machine = configure(listed, cards="PM")
-    assert predict_cycles(machine, listed).binding == "busiest element"
+    assert predict_cycles(machine, listed).binding == "busiest port"
+    assert predict_cycles(replace(machine, memory_ports=2), listed).binding == "busiest element"
     slow = predict_cycles(machine, listed, setup=SetupTiming(interval=1000))
     assert slow.binding == "set-up"
     assert slow.cycles - 1000 < slow.bound <= slow.cycles + 1000
