@@ -30,6 +30,7 @@ from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
+from .port_clocks import scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -72,7 +73,7 @@ def estimate_cycles(configuration: MachineConfiguration,
     accesses, slots = 1.0, 0.0
     if configuration.memory_ports == 1:
         accesses += visible_share(depth_complexity(display_list, **shifts))
-        slots = _scan_share(configuration)
+        slots = scan_share(configuration)
     x_bits = np.array([block.x_bits for block in blocks])
     # Units in turn along a row share its accesses; one fragment a clock at best.
     clocks = np.maximum(1.0, accesses / (1 << (interlace.x_unit_bits - x_bits))) / (1 - slots)
@@ -96,14 +97,6 @@ def visible_share(complexity: NDArray[np.int32]) -> float:
     written = np.cumsum(np.concatenate([[0.0], 1 / np.maximum(drawn[1:], 1)]))
     total = int((counts * drawn).sum())
     return float((counts * written).sum()) / total if total else 0.0
-
-
-def _scan_share(configuration: MachineConfiguration) -> float:
-    """Of a unit's clocks, those in which the scan reads it."""
-    interlace, timing = configuration.interlace, configuration.timing
-    active = timing.horizontal_active * timing.vertical_active / timing.pixels
-    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
-    return active / (groups << interlace.y_unit_bits)
 
 
 def cards_for_cycles(display_list: DisplayList, cycles: int, **fields: Any) -> str:

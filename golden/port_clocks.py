@@ -76,6 +76,14 @@ class RowClocks:
         return clocks
 
 
+def scan_share(configuration: MachineConfiguration) -> float:
+    """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
+    interlace, timing = configuration.interlace, configuration.timing
+    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
+    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
+    return shown / (groups << interlace.y_unit_bits)
+
+
 class PortClocks:
     """The clocks of all spans of a list, asked for in drawing order; ``after`` was drawn before.
 
@@ -92,6 +100,7 @@ class PortClocks:
         self._rows = RowClocks(configuration.processing_elements, configuration.units)
         interlace = configuration.interlace
         self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
+        self._accesses = np.zeros(interlace.units)
         if after is not None and not self._two_ports:
             self._nearest = draw(after, shading="flat", x_shift=interlace.x_shift,
                                  y_shift=interlace.y_shift).depth.astype(np.int64).reshape(-1)
@@ -116,6 +125,12 @@ class PortClocks:
                                  np.full(_PERIOD, 1 / _PERIOD))[:len(order)]
             clocks[order] += np.where(in_turn[order], 0, spread)
         return clocks * self._scan_factor(spans)
+
+    @property
+    def bound(self) -> float:
+        """Clocks that the busiest unit's one port is taken by the spans asked for and by the scan;
+        0 with two ports, which never wait."""
+        return float(self._accesses.max()) / (1 - scan_share(self._configuration))
 
     def _scan_factor(self, spans: LatticeSpans) -> Float64:
         """How much longer it takes at a port that the scan uses too, blanking included.
@@ -143,6 +158,8 @@ class PortClocks:
                           y_shift=interlace.y_shift)
         pixel = drawn.y.astype(np.int64) * interlace.width + drawn.x
         visible = self._visible(pixel, drawn.depth)
+        unit = interlace.unit(drawn.x.astype(np.int64), drawn.y.astype(np.int64))
+        self._accesses += np.bincount(unit, 1 + visible, interlace.units)
         # Fragments come in the order of the whole spans and of the columns in each.
         whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
         written = np.zeros(len(spans.source), np.int64)

@@ -82,7 +82,7 @@ class TriangleSetup(wiring.Component):
         return Slot.COUNT * self.slot_clocks
 
     @property
-    def _behind(self) -> int:
+    def preparation(self) -> int:
         """Clocks from an outline to its triangle: taken, first to last slot, inputs, results,
         queues, pop, output."""
         results = max(part.latency for part in (self._edges, *self._planes.values()))
@@ -91,12 +91,12 @@ class TriangleSetup(wiring.Component):
     @property
     def latency(self) -> int:
         """Clocks from vertices to the triangle."""
-        return self._outlines.latency + self._behind
+        return self._outlines.latency + self.preparation
 
     @property
     def depth(self) -> int:
         """Triangles on their way from outline to the queues' end: so many that no slot is lost."""
-        return -(-self._behind // self.interval) + 1
+        return -(-self.preparation // self.interval) + 1
 
     def elaborate(self, platform):
         m = Module()

@@ -22,8 +22,8 @@ class BenchRow:
 
     ``measured``    None where only the model was asked
     ``predicted``   T(2n) - T(n) by the cycle model
-    ``bound``       clocks below which n triangles cannot come, by broadcast or the busiest element
-    ``binding``     which of the two it is
+    ``bound``       clocks below which n triangles cannot come: ``CyclePrediction.bounds``
+    ``binding``     which of those it is
     """
 
     machine: BenchMachine
@@ -83,9 +83,9 @@ def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -
     setup = None
     if configuration.setup == "hardware":
         unit = TriangleSetup(configuration=configuration)
-        setup = SetupTiming(interval=unit.interval, latency=unit.latency, inside=unit.depth)
-    [once] = predict_cycles(configuration, case.once, setup=setup)
-    [twice] = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
+        setup = SetupTiming(interval=unit.interval, latency=unit.preparation, inside=unit.depth)
+    once = predict_cycles(configuration, case.once, setup=setup)
+    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
                     predicted=twice.cycles - once.cycles, bound=twice.bound / 2,
                     binding=twice.binding)

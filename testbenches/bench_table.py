@@ -89,7 +89,8 @@ def _cells(row: BenchRow) -> tuple[str, ...]:
 def _notes(rows: Sequence[BenchRow]) -> list[str]:
     without_setup = [peer.short for peer in peers() if "hardware" not in peer.setup]
     without_depth = [peer.short for peer in peers() if not peer.depth_tested]
-    of_bound = "Of bound: how near to what set-up and broadcast and the busiest element allow."
+    of_bound = ("Of bound: how near to what set-up, broadcast, the busiest processing element and "
+                "the busiest port allow.")
     said = [
         "Nothing was simulated: clocks are the cycle model's, (T(2n) - T(n)) / n of n triangles.  "
         + of_bound,

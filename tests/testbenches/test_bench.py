@@ -100,7 +100,7 @@ def test_measured_and_predicted(cards):
         assert measured.cycles_once == measured.sustained_cycles + measured.latency
         for cycles, listed in ((measured.cycles_once, case.once),
                                (measured.cycles_twice, case.twice)):
-            [predicted] = predict_cycles(configuration, listed)
+            predicted = predict_cycles(configuration, listed)
             assert predicted.cycles == pytest.approx(cycles, rel=0.05, abs=15)
             assert predicted.bound <= cycles * 1.05
 
