@@ -187,11 +187,11 @@ def test_unit_numbers():
 
 
 def test_unit_numbers_in_squares():
-    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("units", "side")]
+    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("total units", "side")]
     assert len(rows) == 4
     for row in rows:
         units, side, share = (int(row[name]).bit_length() - 1
-                              for name in ("units", "side", "units each"))
+                              for name in ("total units", "side", "each"))
         interlace = Interlace(units, 64, 64, block_bits=side, share_bits=share)
         *_, documented = row.values()
         assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
