@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
+from amaranth.hdl import Fragment
+
+from ..golden.configuration import MachineConfiguration
 from ..golden.cycle_model import SetupTiming, predict_cycles
+from ..hdl.triangle_outline import TriangleOutline
 from ..hdl.triangle_setup import TriangleSetup
 from .bench_cases import CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
@@ -78,12 +83,20 @@ def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
     return len(machines) * -(-len(cases) * len(orders) // _TOGETHER)
 
 
+@cache
+def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
+    """What the machine's own set-up says of itself."""
+    if configuration.setup == "host":
+        return None
+    unit = TriangleSetup(configuration=configuration)
+    Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
+    return SetupTiming(interval=unit.interval, latency=unit.preparation,
+                       waiting=TriangleOutline.queue_depth, inside=unit.depth)
+
+
 def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
     configuration = machine.configuration
-    setup = None
-    if configuration.setup == "hardware":
-        unit = TriangleSetup(configuration=configuration)
-        setup = SetupTiming(interval=unit.interval, latency=unit.preparation, inside=unit.depth)
+    setup = _setup_timing(configuration)
     once = predict_cycles(configuration, case.once, setup=setup)
     twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,

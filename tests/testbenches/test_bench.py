@@ -143,6 +143,15 @@ def test_the_model_alone(tmp_path):
         assert picture.size[0] > 500
 
 
+def test_set_up_in_hardware_has_its_own_bound(tmp_path):
+    """Three clocks a triangle where that is what the fast one takes."""
+    bench("one_pixel", "--engine", "model", "--elements", "16", "--setup", "host,fast", "--json",
+          tmp_path / "b.json")
+    host, fast = json.loads((tmp_path / "b.json").read_text())["rows"]
+    assert (host["predicted_cycles"], fast["predicted_cycles"]) == (64, 3 * 64)
+    assert fast["bound"] == {"cycles": 3 * 64, "binding": "set-up", "share": 1}
+
+
 @pytest.mark.parametrize(("arguments", "message"), [
     (["sliver"], "there is no 'sliver'; take sliver_"),
     (["one_pixel", "--against", "nowhere.json"], "no such file; write one with --json"),
