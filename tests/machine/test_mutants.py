@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 from frames import check_frames, check_scans, draw, many_frames, random_list, spans_twice, triangles
 
+#: How a machine that is wrong shows.
+FAILURES = (AssertionError, TimeoutError, RuntimeError, ValueError, IndexError)
+
 #: name → (module, its class, where it is used, right, wrong)
 MUTANTS = {
     "comparator takes the farther": (
@@ -108,8 +111,33 @@ MUTANTS = {
 }
 
 
-def mutate(monkeypatch, name):
-    module_name, class_name, users, right, wrong = MUTANTS[name]
+#: The same, of what only squares of pixels use.
+MUTANTS_IN_SQUARES = {
+    "a square ends a pixel late": (
+        "span_clip", "SpanClip", ["span_walker"],
+        "with m.If(square_end < extent.beyond):", "with m.If(square_end + 1 < extent.beyond):"),
+    "a row has spans in its first square only": (
+        "span_clip", "SpanClip", ["span_walker"],
+        "ended.eq(empty | (following >= extent.beyond) if square_bits else 1)", "ended.eq(1)"),
+    "every square begins where the last one does": (
+        "span_clip", "SpanClip", ["span_walker"],
+        "x.eq(Mux(underway, current, x_first))", "x.eq(x_first)"),
+    "rows of other squares are not skipped": (
+        "lattice", "next_owned", ["row_walker"],
+        "Mux(after[:square_bits] == 0, mask << square_bits, 0)", "0"),
+    "the first square begins at its second column": (
+        "lattice", "first_owned", ["span_clip"],
+        "(square + ahead) << square_bits)", "((square + ahead) << square_bits) + 1)"),
+    "the scan reads half its groups": (
+        "interlace", "ScanAddress", ["memory_unit"],
+        "self.x[:group_bits] == 0", "self.x[:group_bits + 1] == 0"),
+    "squares are taken for pixels": (
+        "interlace", "LatticeBlock", ["row_walker"],
+        "bit - interlace.block_bits", "0"),
+}
+
+
+def mutate(monkeypatch, module_name, class_name, users, right, wrong):
     module = importlib.import_module(f"cardcage.hdl.{module_name}")
     source = inspect.getsource(module)
     assert source.count(right) == 1, f"{right!r} is not in {module_name} exactly once"
@@ -151,6 +179,21 @@ def test_the_machine_itself_passes():
 
 @pytest.mark.parametrize("name", MUTANTS)
 def test_mutant_is_caught(monkeypatch, name):
-    mutate(monkeypatch, name)
-    with pytest.raises((AssertionError, TimeoutError, RuntimeError, ValueError, IndexError)):
+    mutate(monkeypatch, *MUTANTS[name])
+    with pytest.raises(FAILURES):
         check_machine()
+
+
+def check_squares():
+    draw(random_list(5, 8, width=13, height=9), cards="8x(PMM)", block=2, seed=2)
+
+
+def test_the_machine_itself_passes_in_squares():
+    check_squares()
+
+
+@pytest.mark.parametrize("name", MUTANTS_IN_SQUARES)
+def test_mutant_in_squares_is_caught(monkeypatch, name):
+    mutate(monkeypatch, *MUTANTS_IN_SQUARES[name])
+    with pytest.raises(FAILURES):
+        check_squares()

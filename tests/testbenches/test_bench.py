@@ -85,10 +85,12 @@ def test_the_mesh_lies_in_three_layers():
     assert lists.twice.depth.max() < lists.once.depth.min()
 
 
-@pytest.mark.parametrize("cards", ["PM", "PMPM"])
-def test_measured_and_predicted(cards):
+@pytest.mark.parametrize(("cards", "options"), [
+    ("PM", {}), ("PMPM", {}), ("4x(PM)", {"block": 4, "memory_ports": 2})])
+def test_measured_and_predicted(cards, options):
     cases = [small_case(1, 20), small_case(2, 35)]
-    configuration = replace(configure(cases[1].frame, cards=cards), observe=True, fraction_bits=40)
+    configuration = replace(configure(cases[1].frame, cards=cards, **options), observe=True,
+                            fraction_bits=40)
     measurements = measure(configuration, cases, PysimEngine())
     for case, measured in zip(cases, measurements, strict=True):
         assert measured.fragments == depth_complexity(case.once).sum()

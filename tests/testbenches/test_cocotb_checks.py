@@ -162,6 +162,19 @@ def test_an_unsupported_cage_refuses_everything():
                  None, refusal, None, refusal], three, [Opcode.FRAME_START, 15]).complete
 
 
+@pytest.mark.parametrize("block", [1, 2])
+def test_squares_are_refused_where_shares_differ(block):
+    cage = MachineConfiguration(cards="PMMPMPM", width=4, height=4, block=block,
+                                allow_orphans=True)
+    found = [*((ResponseKind.DOMAIN, value) for value in (2, 2 << 16 | 1, 3 << 16 | 1)),
+             (ResponseKind.UNITS, 4 << 16 | 4)]
+    if block == 1:
+        found += [(ResponseKind.PICTURE, 4 << 16 | 4), (ResponseKind.BOOTED, 0)]
+    else:
+        found += [(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)]
+    assert talk(found, cage, []).complete
+
+
 def test_domains():
     assert domains("MPMMPPM") == [(1, 2), (3, 0), (3, 1)]
 

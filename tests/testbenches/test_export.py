@@ -104,6 +104,15 @@ def test_memory_ports():
                 if memory["words"] == 256] == memories
 
 
+def test_the_interlace_is_described():
+    for block, reads in (("1", 8), ("4", 4)):
+        assert run("--cards", "4x(PMM)", "--size", "16x16", "--fraction-bits", 28, "--block", block,
+                   "--component", "memory_unit", "-o", "unit.v").exit_code == 0
+        configuration = json.loads(Path("unit.json").read_text())["configuration"]
+        assert configuration["block"] == int(block)
+        assert configuration["scan_reads_per_line"] == reads
+
+
 @pytest.mark.parametrize("arguments", [[*TINY], [SCENE, *TINY], [*TINY, "--component", "survey"]])
 def test_deterministic(arguments):
     """In this process and in one that hashes differently."""
