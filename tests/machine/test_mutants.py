@@ -185,7 +185,8 @@ def test_mutant_is_caught(monkeypatch, name):
 
 
 def check_squares():
-    draw(random_list(5, 8, width=13, height=9), cards="8x(PMM)", block=2, seed=2)
+    simulation = draw(random_list(11, 8, width=13, height=9), cards="8x(PM)", block=2, seed=2)
+    assert sum(work.fragments for work in simulation.work) > 150
 
 
 def test_the_machine_itself_passes_in_squares():
