@@ -117,7 +117,7 @@ class PortClocks:
         if units == self._configuration.processing_elements:
             clocks += written
         else:
-            unit = interlace.unit(spans.x_offset, spans.row)
+            unit = interlace.unit(spans.x_offset << self._configuration.square_bits, spans.row)
             waits = self._rows.of(spans.element, unit, spans.length) - spans.length
             # Spread over the runs of the element, as they are where there are gaps between them.
             order = np.argsort(spans.element, kind="stable")
