@@ -2,16 +2,17 @@
 
 A processing element finds the rows of its pixels, one a clock, and each fragment
 takes its unit's one port for a read and, where it is visible, a write; or of two
-ports one clock.  The two go on side by side, so it takes the longer of
+ports one clock.  The two go on side by side, the rows a few triangles ahead, so of
+each few triangles it takes the longer of
 
     walk     the rows of all triangles whose bounding boxes hold a pixel of its lattice
     ports    the accesses of its fragments, slowed down by the scan's slots
 
-and the frame what the busiest processing element takes, or a clock for each
+and the frame what the busiest processing element takes for all, or a clock for each
 triangle's broadcast.
 Where it errs: how often a fragment is visible is the average for a random order of
-drawing; and a processing element that is done with its triangles waits for others
-whose queues are full, and for the next ones.  ``cycle_model`` follows all that.
+drawing; and many processing elements wait for each other's full queues, so that a
+fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
 """
 
 from __future__ import annotations
@@ -25,19 +26,21 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import Pipeline, walks
+from .element_clocks import PIPELINE, walks
 from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
-from .port_clocks import scan_share
+from .port_clocks import WRITE_LATENCY, scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-PIPELINE = Pipeline()
 #: From the frame's start to the first fragment's read, from the last one to done.
 LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
+
+#: How many triangles the rows that are found ahead belong to, about.
+TRIANGLES_AHEAD = 4
 
 #: What is tried for a number of cycles: up to so many processing elements, each with so many units.
 MOST_ELEMENTS = 256
@@ -70,20 +73,32 @@ def estimate_cycles(configuration: MachineConfiguration,
     triangles = Triangles.of(display_list, Grid.of(display_list, **shifts))
     blocks = lattice_blocks(configuration)
     elements = configuration.processing_elements
-    accesses, slots = 1.0, 0.0
+    written, slots = 0.0, 0.0
     if configuration.memory_ports == 1:
-        accesses += visible_share(depth_complexity(display_list, **shifts))
+        written = visible_share(depth_complexity(display_list, **shifts))
         slots = scan_share(configuration)
-    x_bits = np.array([block.x_bits for block in blocks])
-    # Units in turn along a row share its accesses; one fragment a clock at best.
-    clocks = np.maximum(1.0, accesses / (1 << (interlace.x_unit_bits - x_bits))) / (1 - slots)
-    walked, drawn = np.zeros(elements), np.zeros(elements)
-    fragments = np.zeros(elements, np.int64)
+    draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
     for spans in lattice_spans(triangles, blocks):
-        walked += walks(blocks, elements, spans, PIPELINE)[1].sum(axis=0)
-        drawn += np.bincount(spans.element, spans.length * clocks[spans.block], elements)
+        count = spans.end - spans.begin
+        places = spans.triangle * elements + spans.element
+        # Writes wait for reads of the same unit: none where units are in turn along the row; where
+        # they are from row to row, those of a row that is longer than a write's way.
+        alone = (interlace.x_unit_bits == spans.x_bits) & (interlace.y_unit_bits == spans.y_bits)
+        waits = np.where(alone, spans.length,
+                         (spans.length - 1) // WRITE_LATENCY * WRITE_LATENCY)
+        waits[interlace.x_unit_bits > spans.x_bits] = 0
+        clocks = (spans.length + written * waits) / (1 - slots)
+        drawn = np.bincount(places, clocks, count * elements)
+        _, walked, _ = walks(blocks, elements, spans, PIPELINE)
+        draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
         fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
-    return CycleEstimate(np.maximum(walked, drawn), len(triangles), fragments)
+    return CycleEstimate(draw, len(triangles), fragments)
+
+
+def _together(clocks: NDArray[Any]) -> NDArray[Any]:
+    """(triangles, elements) → (runs of a few triangles, elements): sums."""
+    padded = np.pad(clocks, ((0, -len(clocks) % TRIANGLES_AHEAD), (0, 0)))
+    return np.asarray(padded.reshape(-1, TRIANGLES_AHEAD, clocks.shape[1]).sum(axis=1))
 
 
 def visible_share(complexity: NDArray[np.int32]) -> float:

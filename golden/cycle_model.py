@@ -28,15 +28,13 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import Pipeline, element_clocks
+from .element_clocks import PIPELINE, Pipeline, element_clocks
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
 from .port_clocks import PortClocks
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
-
-PIPELINE = Pipeline()
 
 #: Long before all that counts.
 _NEVER = -1e15

@@ -49,6 +49,9 @@ class Pipeline:
     finish: int = 7
 
 
+PIPELINE = Pipeline()
+
+
 @dataclass(frozen=True, eq=False)
 class ElementClocks:
     """Of the triangles ``begin`` … ``end`` - 1, by (triangle, element); those that miss an element

@@ -58,10 +58,13 @@ class BroadcastQueue(wiring.Component):
         m = Module()
         configuration, packet = self.configuration, self.packet
         depth, square_bits = configuration.fifo_depth, configuration.square_bits
+        # One place is the output register, into which a word moves a clock later: with two in all,
+        # the second of two words in a row would find the other place taken.
+        places = max(depth, 3)
         m.submodules.operations = operations = fifo.SyncFIFOBuffered(
-            width=operation_layout(configuration).size, depth=depth)
+            width=operation_layout(configuration).size, depth=places)
         m.submodules.planes = planes = fifo.SyncFIFOBuffered(
-            width=planes_layout(configuration).size, depth=depth)
+            width=planes_layout(configuration).size, depth=places)
 
         triangle, lattice = packet.body.draw, self.lattice
         is_triangle = packet.operation == Operation.DRAW

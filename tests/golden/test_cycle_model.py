@@ -44,26 +44,31 @@ def owner(configuration: MachineConfiguration, unit: int) -> int:
     raise AssertionError(unit)
 
 
-@pytest.mark.parametrize("cards", CARDS)
-def test_spans_hold_every_fragment_of_their_element(cards):
+@pytest.mark.parametrize(("cards", "block"), [*((cards, 1) for cards in CARDS), ("PMM", 4),
+                                              ("2x(PM)", 2), ("4x(PMM)", 4), ("8x(PM)", 8)])
+def test_spans_hold_every_fragment_of_their_element(cards, block):
     listed = scene(1)
-    configuration = configure(listed, cards=cards)
+    configuration = configure(listed, cards=cards, block=block)
     triangles, parts = spans_of(configuration, listed)
     assert len(parts) > 1 and [part.begin for part in parts[1:]] == [
         part.end for part in parts[:-1]]
     drawn = fragments(listed)
     owners = [owner(configuration, unit) for unit in range(configuration.units)]
-    wanted: dict[tuple[int, int, int], int] = {}
+    wanted: Counter[tuple[int, int, int]] = Counter()
+    squares: dict[tuple[int, int, int], set[int]] = {}
     for primitive, x, y in zip(drawn.primitive.tolist(), drawn.x.tolist(), drawn.y.tolist(),
                                strict=True):
         key = primitive, owners[configuration.interlace.unit(x, y)], y
-        wanted[key] = wanted.get(key, 0) + 1
-    found: dict[tuple[int, int, int], int] = {}
+        wanted[key] += 1
+        squares.setdefault(key, set()).add(x // block)
+    found: Counter[tuple[int, int, int]] = Counter()
     for part in parts:
-        for triangle, element, row, length in zip(part.triangle, part.element, part.row,
-                                                  part.length, strict=True):
+        for triangle, element, row, length, crossed, x_bits in zip(
+                part.triangle, part.element, part.row, part.length, part.squares, part.x_bits,
+                strict=True):
             key = int(triangles.primitive[part.begin + triangle]), int(element), int(row)
-            found[key] = found.get(key, 0) + int(length)
+            found[key] += int(length)
+            assert crossed == (len(squares[key]) if block > 1 and x_bits else 1)
     assert found == wanted
 
 

@@ -1,6 +1,7 @@
 """What a processing element keeps of a broadcast: what it owns pixels of, in order."""
 
 import random
+from dataclasses import replace
 
 import pytest
 from hdl_bench.bench import Agent, Drive, simulate
@@ -42,8 +43,8 @@ class Announcer(Agent):
         self.clock += 1
 
 
-def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause)):
-    configuration = small_machine("PM" + 15 * "M", 16, 16)
+def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause), depth=16):
+    configuration = replace(small_machine("PM" + 15 * "M", 16, 16), fifo_depth=depth)
     x_offset, x_mask, y_offset, y_mask = LATTICES[kind]
     display_list = random_triangles(f"{kind} {seed}", 60, width=16, height=16)
     triangles = prepared_values(configuration, prepare(configuration, display_list))
@@ -98,6 +99,14 @@ def test_what_misses_the_lattice_is_passed_over(kind, seed):
 def test_a_domain_of_several_blocks_keeps_everything():
     _, _, _, kept, packets = run("one of sixteen", 0, whole=0)
     assert len(kept) == len(packets)
+
+
+@pytest.mark.parametrize("depth", [2, 3, 4])
+@pytest.mark.parametrize("seed", range(2))
+def test_short_queues_lose_nothing(depth, seed):
+    """Words come as soon as there is room, and leave slowly or at once."""
+    for leave in (no_pause, pauses(f"leave {seed}")):
+        run("everything", seed, pause=(no_pause, leave, leave), depth=depth)
 
 
 def test_latency_and_throughput():

@@ -48,7 +48,7 @@ def test_every_kind_of_cell_is_saved(plans, capsys):
 def color_interpolators(configuration):
     """Names in the Verilog that are the red channel's start, increments or products."""
     text = component_verilog(ProcessingElement(configuration=configuration), "element")
-    return set(re.findall(r"\bred_\w+", text))
+    return set(re.findall(r"\bred_(?:start|step|stride|sum|x|y)\w*", text))
 
 
 def test_a_flat_netlist_has_no_color_interpolator(plans):
@@ -73,8 +73,8 @@ def test_the_weights_of_small_netlists():
     increment = count_cells(IdIncrement(bits=5))
     assert (increment.flip_flops, increment.multipliers, increment.memory) == (0, 0, 0)
     assert 4 <= increment.gates <= 10
-    memory = count_cells(OnePortMemory(words=16, depth_bits=24))
-    assert memory.memory == 16 * (24 + 2 * 24)
+    memory = count_cells(OnePortMemory(words=16, depth_bits=24, tag_bits=2))
+    assert memory.memory == 16 * (26 + 2 * 26)
 
 
 def test_an_edges_registers(plans):
