@@ -83,6 +83,7 @@ def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, 
       cardcage bench
       cardcage bench one_pixel random_bbox16 --elements 1,4,16 --units 1,2
       cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
+      cardcage bench random_bbox16 mesh --elements 16 --block 1,2,4,8,16,32 --engine model
       cardcage bench random_bbox16 --elements 256,1024 --engine model
       cardcage bench --json now.json --against before.json
       cardcage bench --all --json everything.json
