@@ -60,7 +60,7 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
     if cycles is not None:
         settled = options.machine()
         options = replace(options, cards=cards_for_cycles(listed.display_list, cycles, **{
-            name: settled[name] for name in ("words", "clocks_per_pixel", "memory_ports")
+            name: settled[name] for name in ("words", "clocks_per_pixel", "memory_ports", "block")
             if name in settled}))
     planned = plan_machine(listed.display_list, options)
     return ScenePlan(
