@@ -23,7 +23,7 @@ from ..golden.grid import Grid
 from ..golden.setup import prepare
 from ..golden.worst_error import biased_value
 from ..hdl.fragment_stepper import FragmentStepper
-from ..hdl.layouts import span_layout
+from ..hdl.layouts import planes_layout, span_layout
 from ..hdl.span_start import SpanStart
 from .remainder_interpolator import PipelinedRemainderInterpolator, RemainderInterpolator
 
@@ -45,7 +45,7 @@ class FixedPointInterpolator(wiring.Component):
         members = span_layout(configuration).members
         super().__init__({
             "spans": In(stream.Signature(data.StructLayout({
-                "plane": members["planes"].members["depth"],
+                "plane": planes_layout(configuration).members["depth"],
                 **{name: members[name] for name in ("x_steps", "y_steps", "more",
                                                     "x_stride_bits")},
             }))),
@@ -59,7 +59,10 @@ class FixedPointInterpolator(wiring.Component):
         wiring.connect(m, start.started, stepper.started)
         span, given = start.spans.payload, self.spans.payload
         m.d.comb += [
-            span.planes.depth.eq(given.plane),
+            # Each span as a triangle of its own.
+            span.last.eq(1),
+            start.planes.payload.depth.eq(given.plane),
+            start.planes.valid.eq(self.spans.valid),
             *(span[name].eq(given[name]) for name in ("x_steps", "y_steps", "more",
                                                       "x_stride_bits")),
             start.spans.valid.eq(self.spans.valid),

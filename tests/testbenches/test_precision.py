@@ -192,7 +192,8 @@ def test_page(study):
         assert "cardcage precision &lt;&amp;&gt;" in page
         for word in ("natanbc", "PixelForge", "pico-gs", "float32 Z-buffer", "good: 0 LSB"):
             assert word in page
-    assert "--place-and-route measures them" in precision_page(study)
+    equipped = replace(study, missing_tools=None)
+    assert "--place-and-route measures them" in precision_page(equipped)
     assert "--place-and-route measures them" not in page
 
 
@@ -204,7 +205,8 @@ def test_table(study):
     assert exact[0] == f"{study.machine.fraction_bits} exact" and exact[1:6] == ("0",) * 5
     assert all(len(row) == len(table.columns) for table in tables(study) for row in table.rows)
     assert [row[2] for row in speed.rows].count("simulated") == 3
-    assert {row[4] for row in speed.rows} == {"--place-and-route"}
+    equipped = tables(replace(study, missing_tools=None))[2]
+    assert {row[4] for row in equipped.rows} == {"--place-and-route"}
     assert "  nearest  " in text and text.startswith("good: ")
     assert all(line == line.rstrip() for line in text.splitlines())
     row = tables(placed(study))[2].rows[0]
