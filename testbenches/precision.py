@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ..golden.configuration import MachineConfiguration
+from ..golden.errors import InputError
 from ..golden.precision import (
     Float32Point,
     FormatPoint,
@@ -23,7 +24,7 @@ from .compare import compare
 from .engines import AUTO
 from .machine_options import MachineOptions, load_scene, plan_machine, resolution_warnings
 from .measurement_cache import measured_once, package_hash
-from .place_and_route import Placement, missing_tools, place_and_route, recall_placement
+from .place_and_route import Part, Placement, missing_tools, place_and_route, recall_placement
 from .render import simulate_frame
 
 #: In place of an engine: no frame is simulated.
@@ -269,7 +270,10 @@ def _placements(study: PrecisionStudy, machines: dict[int, MachineConfiguration]
     for bits, machine in machines.items():
         if bits in wanted:
             step(f"translating the machine of {bits} fraction bits")
-            placements[bits] = place_and_route(machine, seeds, step)
-        elif (known := recall_placement(machine, seeds)) is not None:
+            try:
+                placements[bits] = place_and_route(Part(machine), seeds, step)
+            except InputError as error:
+                raise InputError(f"{error}; leave --place-and-route out for the rest") from None
+        elif (known := recall_placement(Part(machine), seeds)) is not None:
             placements[bits] = known
     return placements

