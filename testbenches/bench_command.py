@@ -18,24 +18,13 @@ from .bench_cases import DEFAULT_CASES, ORDERS, case_names, check_case
 from .bench_machines import ALL_MACHINES, MachineAxes, bench_machines, varied
 from .bench_table import bench_facts, bench_table, bench_text
 from .command_group import EXIT_DIFFERENT
+from .command_options import Several
 from .engines import ENGINES, make_engine
 from .machine_options import SETUPS
 from .progress import step_bar
 
 #: Of ``--engine``: ask the cycle model only.
 MODEL = "model"
-
-
-class Several(click.ParamType):
-    """Values with commas between them, each of another type."""
-
-    def __init__(self, each: click.ParamType, name: str) -> None:
-        self.each = each
-        self.name = name
-
-    def convert(self, value: Any, param: click.Parameter | None,
-                ctx: click.Context | None) -> tuple[Any, ...]:
-        return tuple(self.each.convert(word, param, ctx) for word in value.split(","))
 
 
 def _numbers(least: int, most: int) -> Several:

@@ -17,8 +17,8 @@ EXIT_DIFFERENT = 1
 EXIT_WRONG_INPUT = 2
 
 
-class CommandGroup(click.Group):
-    """A group whose commands raise ``InputError``, ``MachineError`` or ``click.ClickException``.
+class OneLineErrors(click.Command):
+    """A command that raises ``InputError``, ``MachineError`` or ``click.ClickException``.
 
     Each becomes one line on the error output, without a traceback.  ``obj`` of the context is
     the command line as it was typed.
@@ -43,6 +43,10 @@ class CommandGroup(click.Group):
             _fail(str(error), EXIT_WRONG_INPUT)
         except MachineError as error:
             _fail(str(error), EXIT_DIFFERENT)
+
+
+class CommandGroup(OneLineErrors, click.Group):
+    """A group of such commands."""
 
 
 def warn(message: str) -> None:

@@ -48,6 +48,18 @@ class FractionBits(click.ParamType):
         return int(value)
 
 
+class Several(click.ParamType):
+    """Values with commas between them, each of another type."""
+
+    def __init__(self, each: click.ParamType, name: str) -> None:
+        self.each = each
+        self.name = name
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[Any, ...]:
+        return tuple(self.each.convert(word, param, ctx) for word in value.split(","))
+
+
 #: Together one for each field of ``machine_options.MachineOptions``.
 _CAGE_OPTIONS = (
     click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
