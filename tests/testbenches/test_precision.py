@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from PIL import Image
+from refusals import refusal
 
 from cardcage.golden.plan import plan
 from cardcage.golden.scene_display_list import make_display_list
@@ -307,10 +308,7 @@ def test_a_bound_that_is_exceeded(recorded, monkeypatch):
 ])
 def test_refuses(arguments, message):
     Path("file").write_text("")
-    result = run("precision", *arguments)
-    assert result.exit_code == 2 and result.stdout == ""
-    assert result.stderr.startswith("cardcage: error: ") and result.stderr.count("\n") == 1
-    assert message in result.stderr
+    assert message in refusal(run, "precision", *arguments)
     assert [path.name for path in Path().iterdir()] == ["file"]
 
 

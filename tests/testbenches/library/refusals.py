@@ -1,0 +1,42 @@
+"""What every command does with input that is wrong."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from click.testing import Result
+
+#: Scenes and machines that no command takes, and a word of what each says of them.
+BAD_SCENES_AND_MACHINES = [
+    (["teapott"], "did you mean teapot?"),
+    (["nowhere.obj"], "no such file"),
+    (["--cards", "PMMM"], "power of two"),
+    (["--size", "16"], "width and a height"),
+    (["--size", "4096x4096", "--cards", "PM"], "words"),
+    (["--fraction-bits", "65"], "fraction-bits"),
+    (["--preset", "huge"], "huge"),
+]
+
+
+def listing() -> dict[str, bytes | None]:
+    """Everything in the folder: the contents of files, None for folders."""
+    return {str(path): path.read_bytes() if path.is_file() else None
+            for path in Path().rglob("*")}
+
+
+def refusal(run: Callable[..., Result], *arguments: object) -> str:
+    """The line that ``run(*arguments)`` says: status 2, one line, nothing on the output, nothing
+    new in the folder."""
+    before = listing()
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert_one_line(result.stderr)
+    assert listing() == before
+    return result.stderr
+
+
+def assert_one_line(errors: str) -> None:
+    """``errors`` are one line, of an error."""
+    assert errors.startswith("cardcage: error: ")
+    assert errors.count("\n") == 1 and errors.endswith("\n")
+    assert "Traceback" not in errors
