@@ -6,6 +6,7 @@ from math import floor
 
 import numpy as np
 import pytest
+from edge_steps import carried_columns, stepped_columns
 
 from cardcage.golden import bit_true, exact, fixed
 from cardcage.golden.coverage import Triangles
@@ -203,21 +204,6 @@ def long_edge(triangle, size, sub_bits):
     return prepared.long, true
 
 
-def columns_of(edges, rows, column_bits, remainder_bits, sum_bits):
-    """The column on each row of the first triangle's edge, in registers of those widths."""
-    step = fixed.wrap(int(edges.column_step[0]), column_bits)
-    column = fixed.wrap(int(edges.column[0]), column_bits)
-    remainder, remainder_step, denominator = (
-        fixed.wrap(int(part[0]), remainder_bits)
-        for part in (edges.remainder, edges.remainder_step, edges.denominator))
-    for _ in range(rows):
-        yield fixed.to_signed(column, column_bits)
-        total = fixed.wrap(remainder + remainder_step, sum_bits)
-        carry = total >= denominator
-        remainder = fixed.wrap(total - denominator * carry, remainder_bits)
-        column = fixed.wrap(column + step + carry, column_bits)
-
-
 @pytest.mark.parametrize(("n", "s"), [(3, 2), (4, 4), (5, 8), (9, 8)])
 def test_widths_of_quotient_and_remainder(n, s):
     """b - s + 1 bits of column, b of remainder, b + 1 of their sum: none can be narrower."""
@@ -234,10 +220,10 @@ def test_widths_of_quotient_and_remainder(n, s):
     for triangle in ([[high, low], [low, high], [high - 1, high]],
                      [[low, low], [low, high], [high - (high - low) // 3, high]]):
         edges, true = long_edge(triangle, size, s)
-        assert list(columns_of(edges, size, **widths)) == true
+        assert stepped_columns(edges, 0, size, **widths) == true
         for name in widths:
             narrower = widths | {name: widths[name] - 1}
-            if list(columns_of(edges, size, **narrower)) != true:
+            if stepped_columns(edges, 0, size, **narrower) != true:
                 failed.add(name)
     assert failed == set(widths)
 
@@ -261,9 +247,7 @@ def test_widths_of_carried_edges(n, s, ends):
         for less in ((0, 0), (1, 0), (0, 1)):
             columns, fractions = column_bits - less[0], fraction_bits - less[1]
             carried = carry_edges(edges, column_bits=columns, fraction_bits=fractions)
-            words = [int(carried.start[0]) + row * int(carried.step[0]) for row in range(size)]
-            stepped = [fixed.to_signed(word, columns + fractions) >> fractions for word in words]
-            if stepped != true:
+            if carried_columns(carried, 0, size, columns) != true:
                 failed.append(((x0, x1), less))
     assert failed == [((high, high - 1), (1, 0)), (ends, (0, 1))]
 

@@ -4,8 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from edge_steps import carried_columns, stepped_columns
 
-from cardcage.golden import exact, fixed
+from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
 from cardcage.golden.setup import (
@@ -44,21 +45,6 @@ def random_list(seed, count=40):
         sub_bits=sub_bits,
         depth_bits=depth_bits,
     )
-
-
-def stepped_columns(edges, triangle, rows, bits):
-    """The column on each of ``rows`` rows, as hardware of ``bits`` bits steps it."""
-    column, remainder = int(edges.column[triangle]), int(edges.remainder[triangle])
-    denominator = int(edges.denominator[triangle])
-    columns = []
-    for _ in range(rows):
-        columns.append(fixed.to_signed(column, bits))
-        column += fixed.wrap(int(edges.column_step[triangle]), bits)
-        remainder += int(edges.remainder_step[triangle])
-        if remainder >= denominator:
-            remainder -= denominator
-            column += 1
-    return columns
 
 
 def spans_of(prepared, triangle, bits):
@@ -218,15 +204,6 @@ def test_empty_list():
 def test_bad_input(arguments, word):
     with pytest.raises(InputError, match=word):
         prepare(random_list(0), **arguments)
-
-
-def carried_columns(carried, triangle, rows, column_bits):
-    """The column on each of ``rows`` rows, as a machine that carries the edge finds it."""
-    fraction_bits = carried.word_bits - column_bits
-    start, step = int(carried.start[triangle]), int(carried.step[triangle])
-    return [fixed.floor_shift(fixed.to_signed(fixed.wrap(start + row * step, carried.word_bits),
-                                              carried.word_bits), fraction_bits)
-            for row in range(rows)]
 
 
 @pytest.mark.parametrize("seed", range(30))
