@@ -46,6 +46,8 @@ class MachineConfiguration:
     ``fifo_depth``        primitives a processing element can hold in waiting
     ``block``             side of the squares of pixels in which processing elements interlace, a
                           power of two; 1 interlaces all memory units pixel by pixel
+    ``skew``              interlaced pixel by pixel, two units of a processing element alternate
+                          along its rows, not only from row to row
     ``memory_ports``      of a memory unit: 1, shared by all, or 2, as FPGAs have them
     ``tag_bits``          of the frame's tag beside each depth and colour, which spares the clear
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
@@ -81,6 +83,7 @@ class MachineConfiguration:
     maximum_units: int = 0
     fifo_depth: int = 16
     block: int = 1
+    skew: bool = False
     memory_ports: int = 1
     tag_bits: int = 4
     clocks_per_pixel: int = 4
@@ -133,7 +136,8 @@ class MachineConfiguration:
         self._check_block()
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
-                             block_bits=self.square_bits, share_bits=self.share_bits)
+                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             skew=self.skew)
             if full.words > MAXIMUM_WORDS:
                 raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
                                  f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
@@ -158,6 +162,10 @@ class MachineConfiguration:
                              f"{self.block}")
         if self.block == 1:
             return
+        if self.skew:
+            raise InputError(f"skew: in squares of {self.block}x{self.block} pixels units "
+                             "alternate along the rows already; leave it out, or interlace pixel "
+                             "by pixel (block 1)")
         squares = f"block: squares of {self.block}x{self.block} pixels"
         shares = {units for _, units in domains(self.cards)}
         if len(shares) > 1 and not self.allow_orphans:
@@ -204,7 +212,8 @@ class MachineConfiguration:
 
     def _interlace_of(self, units: int) -> Interlace:
         return interlace_for(self.width, self.height, words=self.words, units=units,
-                             block_bits=self.square_bits, share_bits=self.share_bits)
+                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             skew=self.skew)
 
     # Widths: each with its reason
 

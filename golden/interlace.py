@@ -11,6 +11,11 @@ Where processing elements interlace in squares, of ``2**block_bits`` pixels a si
 the bits of x and y above those inside a square name the processing element; the
 units of one, ``2**share_bits``, still interlace pixel by pixel, inside its squares.
 
+The least significant bit of the number is one of y, so two units of a processing
+element have its rows in turn.  Skewed, the bit is that one xor the lowest bit of x
+that names no unit: they alternate along each row too, and the pixels of one of them
+are a lattice of which every other row is shifted by half its distance in x.
+
 Inside a unit the pixels lie row after row, ``pitch`` words to a row; the bits of x
 and y that name the unit are left out.
 """
@@ -37,9 +42,11 @@ class Interlace:
     ``width``, ``height``: the machine's own resolution; ``x_shift``, ``y_shift``: the low bits
     of a highest-resolution address that do not exist in it.  ``block_bits``: log2 of the side of
     the squares in which processing elements interlace, of ``2**share_bits`` units each; both 0
-    where all units interlace pixel by pixel, whomever they belong to.
+    where all units interlace pixel by pixel, whomever they belong to.  ``skew``: the last bit of
+    the number is skewed; not in squares.
 
-    Raises ``ValueError`` where there are fewer units than in a share, or fewer pixels in a square.
+    Raises ``ValueError`` where there are fewer units than in a share, or fewer pixels in a square,
+    or squares are to be skewed.
     """
 
     unit_bits: int
@@ -49,11 +56,14 @@ class Interlace:
     y_shift: int = 0
     block_bits: int = 0
     share_bits: int = 0
+    skew: bool = False
 
     def __post_init__(self) -> None:
         if not 0 <= self.share_bits <= min(self.unit_bits, 2 * self.block_bits):
             raise ValueError(f"share_bits must be 0 to {min(self.unit_bits, 2 * self.block_bits)}, "
                              f"not {self.share_bits}")
+        if self.skew and self.block_bits:
+            raise ValueError("skew wants block_bits 0: in squares units alternate along x already")
 
     @property
     def units(self) -> int:
@@ -62,13 +72,18 @@ class Interlace:
     @property
     def bit_order(self) -> tuple[tuple[str, int], ...]:
         """Source of each bit of the unit number, most significant first: ``("x", 0)`` is x's
-        least significant bit."""
+        least significant bit.  ``skew_bit`` changes the last."""
         lattice_bits = self.unit_bits - self.share_bits
         order = [("xy"[place % 2], self.block_bits + place // 2) for place in range(lattice_bits)]
         if lattice_bits % 2:
             order[-1] = ("y", order[-1][1])
         inside = [("xy"[place % 2], place // 2) for place in range(self.share_bits)]
         return (*order, *inside)
+
+    @property
+    def skew_bit(self) -> int | None:
+        """The bit of x that is added (xor) to the last bit of the unit number; None adds none."""
+        return self.x_unit_bits if self.skew and self.unit_bits else None
 
     @property
     def x_unit_bits(self) -> int:
@@ -91,8 +106,14 @@ class Interlace:
 
     @property
     def pitch(self) -> int:
-        """Words a row takes in each unit; also the scan reads per unit and line, at worst."""
+        """Words a row takes in each unit; two rows share them where they are skewed."""
         return _extent(self.width, self.unit_mask("x"))
+
+    @property
+    def scan_reads(self) -> int:
+        """Scan reads per unit and line, at worst."""
+        skewed = 0 if self.skew_bit is None else 1 << self.skew_bit
+        return _extent(self.width, self.unit_mask("x") | skewed)
 
     @property
     def rows(self) -> int:
@@ -106,15 +127,21 @@ class Interlace:
     def stride_bits(self, block_bits: int) -> tuple[int, int]:
         """Log2 of the distance in x and in y between neighbouring squares of an aligned block of
         ``2**block_bits`` units, a whole share at least; a distance of 1 is that of squares side
-        by side."""
+        by side.  Where the block is ``shifted`` the one in y is that of neighbouring rows."""
         fixed = [axis for axis, _ in self.bit_order[: self.unit_bits - block_bits]]
-        return fixed.count("x"), fixed.count("y")
+        shifted = self.shifted(block_bits)
+        return fixed.count("x") + shifted, fixed.count("y") - shifted
+
+    def shifted(self, block_bits: int) -> bool:
+        """Every other row of an aligned block of ``2**block_bits`` units is shifted by half the
+        distance in x."""
+        return self.skew_bit is not None and block_bits == 0
 
     def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
         number = x * 0
         for axis, bit in self.bit_order:
             number = number * 2 + (((x if axis == "x" else y) >> bit) & 1)
-        return number
+        return number ^ self._skewed(x)
 
     def address(self, x: Coordinate, y: Coordinate) -> Coordinate:
         return (_without(y, self.unit_mask("y")) * self.pitch
@@ -124,6 +151,7 @@ class Interlace:
         """The inverse of ``unit`` and ``address``; padding words give pixels off the picture."""
         x = _with_gaps(address % self.pitch, self.unit_mask("x"))
         y = _with_gaps(address // self.pitch, self.unit_mask("y"))
+        unit = unit ^ self._skewed(x)
         for place, (axis, bit) in enumerate(reversed(self.bit_order)):
             value = ((unit >> place) & 1) << bit
             if axis == "x":
@@ -131,6 +159,9 @@ class Interlace:
             else:
                 y = y | value
         return x, y
+
+    def _skewed(self, x: Coordinate) -> Coordinate:
+        return x * 0 if self.skew_bit is None else (x >> self.skew_bit) & 1
 
 
 def _without(value: Coordinate, mask: int) -> Coordinate:
@@ -158,7 +189,7 @@ def _extent(size: int, mask: int) -> int:
 
 
 def interlace_for(width: int, height: int, *, words: int, units: int, block_bits: int = 0,
-                  share_bits: int = 0) -> Interlace:
+                  share_bits: int = 0, skew: bool = False) -> Interlace:
     """The interlace of ``units`` units (a power of two) of ``words`` words each.
 
     Where the memory does not hold ``width`` × ``height``, the picture is halved, y first, then
@@ -178,6 +209,7 @@ def interlace_for(width: int, height: int, *, words: int, units: int, block_bits
             y_shift=y_shift,
             block_bits=block_bits,
             share_bits=share_bits,
+            skew=skew,
         )
         if interlace.words <= words:
             return interlace

@@ -30,6 +30,7 @@ class LatticeBlock:
     """An aligned power of two of units: squares ``2**square_bits`` pixels wide, ``2**x_bits`` and
     ``2**y_bits`` squares apart, from an offset in squares.
 
+    ``shifted``: every other row, from the second on, has its pixels half as far to the side.
     ``place`` counts the blocks of one processing element, ``element``.
     """
 
@@ -40,6 +41,12 @@ class LatticeBlock:
     x_bits: int
     y_bits: int
     square_bits: int
+    shifted: bool
+
+    def x_offset_of(self, row: int) -> int:
+        """Of a row that it owns."""
+        further = self.shifted and row >> self.y_bits & 1
+        return self.x_offset ^ (1 << self.x_bits >> 1 if further else 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +61,7 @@ class LatticeSpans:
     ``row``       row of the picture
     ``length``    pixels
     ``squares``   squares of the lattice that they lie in; 1 where it is one of single pixels
-    ``x_offset`` ``x_bits`` ``y_bits``  of the block
+    ``x_offset`` ``x_bits`` ``y_bits``  of the block in this row
     ``source``    index of the whole span in ``whole``, the covered columns it is cut from
     ``rows``      int64 (end - begin, blocks): lattice rows of each triangle in each block
     ``met``       bool, alike: the triangle's bounding box holds a pixel of the block
@@ -95,8 +102,11 @@ def _blocks(element: int, first: int, end: int, interlace: Interlace,
         bits = min(largest, aligned)
         x_bits, y_bits = interlace.stride_bits(bits)
         x, y = (position >> square_bits for position in interlace.pixel(first, 0))
+        shifted = interlace.shifted(bits)
+        if shifted:  # by its last bit, in rows where the bit of y is 0
+            x |= (first & 1) << x_bits - 1
         yield LatticeBlock(element, place, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1),
-                           x_bits, y_bits, square_bits)
+                           x_bits, y_bits, square_bits, shifted)
         first += 1 << bits
         place += 1
 
@@ -127,12 +137,14 @@ def _before(position: Int64, offset: Int64 | int, bits: Int64 | int, square_bits
 def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
          whole: Spans) -> LatticeSpans:
     facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
-             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits")}
+             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits", "shifted")}
     square_bits = blocks[0].square_bits
     left, right, top, bottom = (
         edge[begin:end, np.newaxis].astype(np.int64)
         for edge in (triangles.left, triangles.right, triangles.top, triangles.bottom))
-    in_x, in_y = ((facts[f"{axis}_offset"], facts[f"{axis}_bits"], square_bits) for axis in "xy")
+    in_y = facts["y_offset"], facts["y_bits"], square_bits
+    # Of shifted rows together.
+    in_x = facts["x_offset"], facts["x_bits"] - facts["shifted"], square_bits
     above = _before(top, *in_y)
     rows = _before(bottom, *in_y) - above
     met = (rows > 0) & (_before(right, *in_x) > _before(left, *in_x))
@@ -141,10 +153,12 @@ def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
     beyond = whole.first + whole.length
     for x_bits, y_bits in sorted({(block.x_bits, block.y_bits) for block in blocks}):
         for x_offset in range(1 << x_bits):
-            by_row = np.full(1 << y_bits, -1)
+            by_row = np.full(2 << y_bits, -1)
             for place, block in enumerate(blocks):
-                if (block.x_bits, block.y_bits, block.x_offset) == (x_bits, y_bits, x_offset):
-                    by_row[block.y_offset] = place
+                if (block.x_bits, block.y_bits) == (x_bits, y_bits):
+                    for row in (block.y_offset, block.y_offset + (1 << y_bits)):
+                        if block.x_offset_of(row) == x_offset:
+                            by_row[row] = place
             length, squares = (
                 _before(last, x_offset, x_bits, bits) - _before(first, x_offset, x_bits, bits)
                 for first, last, bits in (
@@ -152,10 +166,12 @@ def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
                     (whole.first >> square_bits, ((beyond - 1) >> square_bits) + 1, 0)))
             if not square_bits or not x_bits:  # one span, whatever it crosses
                 squares = np.ones_like(length)
-            owner = by_row[(whole.row >> square_bits) & ((1 << y_bits) - 1)]
+            owner = by_row[(whole.row >> square_bits) & ((2 << y_bits) - 1)]
             found = np.flatnonzero((length > 0) & (owner >= 0))
-            parts.append((found, owner[found], length[found], squares[found]))
-    source, number, length, squares = (np.concatenate(part) for part in zip(*parts, strict=True))
+            parts.append((found, owner[found], length[found], squares[found],
+                          np.full(len(found), x_offset)))
+    source, number, length, squares, x_offset_of = (
+        np.concatenate(part) for part in zip(*parts, strict=True))
     triangle = whole.triangle[source] - begin
     order = np.lexsort((whole.row[source], number, triangle))  # blocks count by element
     source, number, triangle = source[order], number[order], triangle[order]
@@ -164,5 +180,5 @@ def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
     step = _before(row, of_block["y_offset"], of_block["y_bits"], square_bits)
     return LatticeSpans(
         begin, end, triangle, of_block["element"], number, step - above[triangle, number], row,
-        length[order], squares[order], of_block["x_offset"], of_block["x_bits"],
+        length[order], squares[order], x_offset_of[order], of_block["x_bits"],
         of_block["y_bits"], source, whole, rows, met)

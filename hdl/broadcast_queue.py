@@ -5,7 +5,7 @@ from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .lattice import first_owned, lattice_layout
+from .lattice import first_owned, lattice_layout, rows_mask
 from .layouts import Operation, broadcast_layout, operation_layout, outline_layout, planes_layout
 
 __all__ = ["BroadcastQueue"]
@@ -16,7 +16,8 @@ class BroadcastQueue(wiring.Component):
 
     A triangle whose bounding box holds no pixel of the lattice is passed over as
     it is announced, and costs nothing; where the domain is no single lattice all
-    are kept.  Rows and edges wait apart from the interpolants: those are needed
+    are kept.  Of a lattice with shifted rows, one whose box holds their columns is
+    kept, in whichever row.  Rows and edges wait apart from the interpolants: those are needed
     later, span by span, and stay at their output until a triangle's last one.
 
     Latency: three clocks.  Throughput: a word a clock.
@@ -69,7 +70,8 @@ class BroadcastQueue(wiring.Component):
         triangle, lattice = packet.body.draw, self.lattice
         is_triangle = packet.operation == Operation.DRAW
         first_row = first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)
-        first_column = first_owned(triangle.left, lattice.x_offset, lattice.x_mask, square_bits)
+        first_column = first_owned(triangle.left, lattice.x_offset,
+                                   rows_mask(lattice, configuration), square_bits)
         # The interpolants are the last field of a triangle: without them the rest is its start.
         outline = Value.cast(packet.body)[:outline_layout(configuration).size]
         assert len(outline) + planes_layout(configuration).size == triangle.shape().size

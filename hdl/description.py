@@ -68,7 +68,7 @@ def _configuration(configuration: MachineConfiguration) -> dict:
         "processing_elements": configuration.processing_elements,
         "picture_width": interlace.width,
         "picture_height": interlace.height,
-        "scan_reads_per_line": interlace.pitch,
+        "scan_reads_per_line": interlace.scan_reads,
         "cycles_per_scan": configuration.cycles_per_scan,
     }
 

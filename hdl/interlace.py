@@ -16,7 +16,10 @@ def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
     # A picture may have fewer rows or columns than there are units along them.
     axes = {axis: Cat(value, C(0, interlace.unit_mask(axis).bit_length()))
             for axis, value in (("x", x), ("y", y))}
-    return Cat(axes[axis][bit] for axis, bit in reversed(interlace.bit_order))
+    number = [axes[axis][bit] for axis, bit in reversed(interlace.bit_order)]
+    if interlace.skew_bit is not None and interlace.skew_bit < len(x):
+        number[0] ^= x[interlace.skew_bit]
+    return Cat(number)
 
 
 def _without(value: Value, mask: int) -> Value:
@@ -139,6 +142,7 @@ class LatticeBlock(wiring.Component):
     The pixels of an aligned power-of-two block of units form a regular lattice;
     a processing element walks its domain block by block (one, where the shares
     are equal powers of two).  Interlaced in squares, a share is the only block.
+    Skewed, every other row of a block of one unit is shifted.
 
     Members
     -------
@@ -180,10 +184,17 @@ class LatticeBlock(wiring.Component):
                                 m.d.comb += [self.lattice.x_stride_bits.eq(x_stride),
                                              self.lattice.x_mask.eq((1 << x_stride) - 1),
                                              self.lattice.y_mask.eq((1 << y_stride) - 1)]
+                                if self.configuration.skew:
+                                    m.d.comb += self.lattice.shifted.eq(
+                                        interlace.shifted(block_bits))
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):
-                    for place, (axis, bit) in enumerate(reversed(interlace.bit_order)):
+                    sources = list(reversed(interlace.bit_order))
+                    if interlace.skew_bit is not None:
+                        # Of a block of one unit, where the bit of y is 0; masked out of others.
+                        sources[0] = "x", interlace.skew_bit
+                    for place, (axis, bit) in enumerate(sources):
                         offset = self.lattice.x_offset if axis == "x" else self.lattice.y_offset
                         if place >= interlace.share_bits:
                             m.d.comb += offset[bit - interlace.block_bits].eq(self.first[place])

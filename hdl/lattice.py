@@ -5,7 +5,7 @@ from amaranth.lib import data
 
 from ..golden.configuration import MachineConfiguration
 
-__all__ = ["first_owned", "lattice_layout", "next_owned"]
+__all__ = ["first_owned", "lattice_layout", "next_owned", "row_offset", "rows_mask"]
 
 
 def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
@@ -14,14 +14,33 @@ def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``x_offset``, ``y_offset``  the first square's column and row
     ``x_mask``, ``y_mask``      the distance between neighbouring squares, a power of two, less 1
     ``x_stride_bits``           log2 of the distance in x
+    ``shifted``                 every other row is shifted by half of it; only in skewed machines
     """
     interlaces = configuration.interlaces()
-    x_bits, y_bits = map(max, zip(*(interlace.stride_bits(interlace.share_bits)
-                                    for interlace in interlaces), strict=True))
+    strides = [interlace.stride_bits(bits) for interlace in interlaces
+               for bits in range(interlace.share_bits, interlace.unit_bits + 1)]
+    x_bits, y_bits = map(max, zip(*strides, strict=True))
     return data.StructLayout({
         "x_offset": x_bits, "y_offset": y_bits, "x_mask": x_bits, "y_mask": y_bits,
         "x_stride_bits": range(x_bits + 1),
+        **({"shifted": 1} if configuration.skew else {}),
     })
+
+
+def row_offset(lattice: data.View, y: Value, configuration: MachineConfiguration) -> Value:
+    """Of an owned row, the first owned square's column."""
+    if not configuration.skew:
+        return lattice.x_offset
+    # Both distances are powers of two.
+    further = lattice.shifted & (y & (lattice.y_mask + 1)).any()
+    return lattice.x_offset ^ Mux(further, lattice.x_mask ^ rows_mask(lattice, configuration), 0)
+
+
+def rows_mask(lattice: data.View, configuration: MachineConfiguration) -> Value:
+    """As ``x_mask``, of the owned squares of all rows together."""
+    if not configuration.skew:
+        return lattice.x_mask
+    return Mux(lattice.shifted, lattice.x_mask >> 1, lattice.x_mask)
 
 
 def first_owned(position: Value, offset: Value, mask: Value, square_bits: int) -> Value:

@@ -34,7 +34,7 @@ class MemoryUnit(wiring.Component):
     Latency: a scan fetch is on the video bus three clocks later; read data come
     one clock after the read.  Throughput: one access a clock, of whichever kind;
     with two ports a scan fetch, a read and a write.  Scan reads per line: at most
-    ``Interlace.pitch``.
+    ``Interlace.scan_reads``.
 
     Members
     -------

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
 from .edge_columns import extent_layout
-from .lattice import first_owned
+from .lattice import first_owned, row_offset
 from .layouts import span_layout
 
 __all__ = ["SpanClip"]
@@ -50,7 +50,8 @@ class SpanClip(wiring.Component):
         past = (configuration.maximum_units + 1) << square_bits
         current, x, following, end = (Signal(range(configuration.width + past), name=name)
                                       for name in ("current", "x", "following", "end"))
-        x_first = first_owned(extent.first, lattice.x_offset, lattice.x_mask, square_bits)
+        x_first = first_owned(extent.first, row_offset(lattice, extent.y, configuration),
+                              lattice.x_mask, square_bits)
         m.d.comb += [x.eq(Mux(underway, current, x_first)), end.eq(extent.beyond)]
         if square_bits:
             square_end = ((x >> square_bits) + 1) << square_bits

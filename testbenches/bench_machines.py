@@ -22,6 +22,7 @@ class MachineAxes:
     ``ports``     of each memory unit
     ``setups``    keys of ``machine_options.SETUPS``
     ``blocks``    pixels a side that neighbour in one processing element; 1 is the interlace of 1979
+    ``skew``      units of a processing element alternate along its rows, too: all machines or none
     ``fifos``     triangles that a processing element can hold in waiting
     """
 
@@ -30,6 +31,7 @@ class MachineAxes:
     ports: Sequence[int] = (2,)
     setups: Sequence[str] = ("host",)
     blocks: Sequence[int] = (1,)
+    skew: bool = False
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
 
 
@@ -48,6 +50,7 @@ class BenchMachine:
     ports: int
     setup: str
     block: int
+    skew: bool
     fifo: int
     configuration: MachineConfiguration
 
@@ -58,6 +61,8 @@ class BenchMachine:
                  "set-up by the host" if self.setup == "host" else f"{self.setup} set-up"]
         if self.block > 1:
             words.append(f"blocks of {self.block}")
+        if self.skew:
+            words.append("skewed")
         if self.fifo != MachineConfiguration.fifo_depth:
             words.append(f"FIFO of {self.fifo}")
         return ", ".join(words)
@@ -66,7 +71,8 @@ class BenchMachine:
 def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
     """Every combination of ``axes``.  Raises ``InputError`` where there is no such machine."""
     return [_machine(*chosen) for chosen in product(
-        axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, axes.fifos)]
+        axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, (axes.skew,),
+        axes.fifos)]
 
 
 def varied(machines: Sequence[BenchMachine]) -> list[str]:
@@ -75,11 +81,11 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
             if len({getattr(machine, name) for machine in machines}) > 1]
 
 
-def _machine(elements: int, units: int, ports: int, setup: str, block: int,
+def _machine(elements: int, units: int, ports: int, setup: str, block: int, skew: bool,
              fifo: int) -> BenchMachine:
     configuration = full_machine(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        memory_ports=ports, block=block, **SETUPS[setup])
-    return BenchMachine(elements, units, ports, setup, block, fifo, configuration)
+        memory_ports=ports, block=block, skew=skew, **SETUPS[setup])
+    return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration)

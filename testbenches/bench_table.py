@@ -116,6 +116,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
         "machine": {"label": machine.label, "cards": machine.configuration.cards,
                     "processing_elements": machine.elements, "units_each": machine.units,
                     "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
+                    "skew": machine.skew,
                     "fifo_depth": machine.fifo,
                     "fraction_bits": machine.configuration.fraction_bits},
         "case": row.case,

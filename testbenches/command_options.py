@@ -93,6 +93,9 @@ _FURTHER_OPTIONS = (
                  help="Interlace processing elements in squares of NxN pixels, N a power of two; "
                  "each wants as many memory units.  1 interlaces pixel by pixel, as in 1979, in "
                  "any shares.  [default: 1]"),
+    click.option("--skew", is_flag=True, default=None, help="Interlaced pixel by pixel, let two "
+                 "memory units of a processing element alternate along its rows, not only from "
+                 "row to row: faster where each has one port."),
     click.option("--setup", type=click.Choice(list(SETUPS)),
                  help="Who sets triangles up: the host, or the machine itself, with one divider "
                  "of each kind or a pipeline of them.  [default: host]"),

@@ -42,6 +42,7 @@ class MachineOptions:
     ``clocks_per_pixel``  clocks a pixel lasts on the video output
     ``memory_ports``      of each memory unit
     ``block``             side of the squares of pixels that processing elements interlace in
+    ``skew``              units of a processing element alternate along its rows, too
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     """
@@ -56,6 +57,7 @@ class MachineOptions:
     clocks_per_pixel: int | None = None
     memory_ports: int | None = None
     block: int | None = None
+    skew: bool | None = None
     setup: SetupChoice | None = None
 
     def machine(self) -> dict[str, Any]:
@@ -63,7 +65,7 @@ class MachineOptions:
         if self.preset is not None and self.preset not in PRESETS:
             raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
         settled = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
-        for name in ("cards", "words", "clocks_per_pixel", "memory_ports", "block",
+        for name in ("cards", "words", "clocks_per_pixel", "memory_ports", "block", "skew",
                      "fraction_bits"):
             if getattr(self, name) is not None:
                 settled[name] = getattr(self, name)
@@ -126,8 +128,8 @@ def option_words(options: MachineOptions) -> list[str]:
         asked["size"] = "x".join(map(str, asked["size"]))
     if asked["shading"] == "auto":
         asked["shading"] = None
-    return [word for name, value in asked.items() if value is not None
-            for word in (f"--{name.replace('_', '-')}", str(value))]
+    return [word for name, value in asked.items() if value is not None and value is not False
+            for word in (f"--{name.replace('_', '-')}", *([] if value is True else [str(value)]))]
 
 
 def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:

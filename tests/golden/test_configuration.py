@@ -121,6 +121,14 @@ def test_squares_want_equal_shares(cards, block, message):
     assert MachineConfiguration(cards, 16, 16).block == 1
 
 
+def test_squares_are_not_skewed():
+    with pytest.raises(InputError, match=r"^skew: in squares of 4x4 pixels .* leave it out"):
+        MachineConfiguration("2x(PMM)", 16, 16, block=4, skew=True)
+    skewed = MachineConfiguration("2x(PMM)", 16, 16, skew=True)
+    assert skewed.interlace.skew_bit == 1
+    assert [interlace.skew_bit for interlace in skewed.interlaces()] == [None, 0, 1]
+
+
 def test_one_word_still_has_an_address():
     assert MachineConfiguration("PM", 1, 1).words == 1
     assert MachineConfiguration("PM", 1, 1).address_bits == 1

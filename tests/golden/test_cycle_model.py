@@ -44,11 +44,12 @@ def owner(configuration: MachineConfiguration, unit: int) -> int:
     raise AssertionError(unit)
 
 
-@pytest.mark.parametrize(("cards", "block"), [*((cards, 1) for cards in CARDS), ("PMM", 4),
-                                              ("2x(PM)", 2), ("4x(PMM)", 4), ("8x(PM)", 8)])
-def test_spans_hold_every_fragment_of_their_element(cards, block):
+@pytest.mark.parametrize(("cards", "block", "skew"), [
+    *((cards, 1, skew) for cards in CARDS for skew in (False, True)), ("PMM", 4, False),
+    ("2x(PM)", 2, False), ("4x(PMM)", 4, False), ("8x(PM)", 8, False)])
+def test_spans_hold_every_fragment_of_their_element(cards, block, skew):
     listed = scene(1)
-    configuration = configure(listed, cards=cards, block=block)
+    configuration = configure(listed, cards=cards, block=block, skew=skew)
     triangles, parts = spans_of(configuration, listed)
     assert len(parts) > 1 and [part.begin for part in parts[1:]] == [
         part.end for part in parts[:-1]]
@@ -73,9 +74,10 @@ def test_spans_hold_every_fragment_of_their_element(cards, block):
 
 
 @pytest.mark.parametrize("cards", CARDS)
-def test_rows_are_those_of_the_lattice(cards):
+@pytest.mark.parametrize("skew", [False, True])
+def test_rows_are_those_of_the_lattice(cards, skew):
     listed = scene(2)
-    configuration = configure(listed, cards=cards)
+    configuration = configure(listed, cards=cards, skew=skew)
     triangles, parts = spans_of(configuration, listed)
     for number, block in enumerate(lattice_blocks(configuration)):
         for part in parts:
@@ -84,7 +86,7 @@ def test_rows_are_those_of_the_lattice(cards):
                         if row % (1 << block.y_bits) == block.y_offset]
                 columns = [column for column in range(triangles.left[triangle],
                                                       triangles.right[triangle])
-                           if column % (1 << block.x_bits) == block.x_offset]
+                           if column % (1 << block.x_bits) in map(block.x_offset_of, range(8))]
                 assert part.rows[place, number] == len(rows)
                 assert part.met[place, number] == bool(rows and columns)
                 here = (part.triangle == place) & (part.block == number)
@@ -147,7 +149,7 @@ def walked_by_hand(configuration: MachineConfiguration, listed: DisplayList, pip
     units = configuration.interlace.unit(*np.meshgrid(np.arange(listed.width),
                                                       np.arange(listed.height)))
     by_block = [  # the units whose pixels have its offset from a multiple of its stride
-        {int(unit) for unit in np.unique(units[block.y_offset::1 << block.y_bits,
+        {int(unit) for unit in np.unique(units[block.y_offset::1 << block.y_bits << block.shifted,
                                                block.x_offset::1 << block.x_bits])}
         for block in blocks]
     work = []
@@ -236,15 +238,16 @@ def written_out(configuration, listed, pipeline, depth, setup):
     return finished
 
 
-@pytest.mark.parametrize("cards", CARDS)
-@pytest.mark.parametrize("seed", range(3))
-def test_the_arrays_say_what_the_recurrence_says(cards, seed):
+@pytest.mark.parametrize(("cards", "skew", "seed"), [
+    *((cards, False, seed) for cards in CARDS for seed in range(3)), ("PMPMMM", True, 3),
+    ("4x(PMM)", True, 4)])
+def test_the_arrays_say_what_the_recurrence_says(cards, skew, seed):
     pick = random.Random(f"pipeline {cards} {seed}")
     listed = scene(10 + seed, n=60, size=pick.choice((4, 12, 25)))
     # The last triangle has a span in every element, which keeps the list in one part.
     listed.position[-1] = 256 * np.array([[0, 0], [39, 0], [0, 27]])
     pipeline = Pipeline(**{field.name: pick.randrange(1, 9) for field in fields(Pipeline)})
-    configuration = configure(listed, cards=cards, memory_ports=2)
+    configuration = configure(listed, cards=cards, memory_ports=2, skew=skew)
     setup = pick.choice((None, SetupTiming(interval=20, latency=30, inside=3),
                          SetupTiming(interval=2, latency=11, waiting=4, inside=7)))
     cycles = []

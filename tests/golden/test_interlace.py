@@ -12,11 +12,11 @@ SIZES = st.integers(1, 80)
 
 @st.composite
 def interlaces(draw):
-    """Pixel by pixel, or in squares of every side."""
+    """Pixel by pixel, skewed or not, or in squares of every side."""
     unit_bits, block_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
     share_bits = draw(st.integers(0, min(unit_bits, 2 * block_bits)))
     return Interlace(unit_bits, draw(SIZES), draw(SIZES), block_bits=block_bits,
-                     share_bits=share_bits)
+                     share_bits=share_bits, skew=not block_bits and draw(st.booleans()))
 
 
 INTERLACES = interlaces()
@@ -78,10 +78,41 @@ def test_the_tile_of_numbers(unit_bits, numbers):
             assert interlace.address(x, y) == y // rows * (8 // columns) + x // columns
 
 
-@given(st.integers(0, 6), st.data())
-def test_aligned_blocks_are_lattices(unit_bits, data):
-    interlace = Interlace(unit_bits, 32, 32)
-    block_bits = data.draw(st.integers(0, unit_bits))
+@pytest.mark.parametrize(("unit_bits", "numbers"), [
+    (0, [[0]]),
+    (1, [[0, 1], [1, 0]]),
+    (2, [[0, 2, 1, 3], [1, 3, 0, 2]]),
+    (3, [[0, 4, 1, 5], [2, 6, 3, 7], [1, 5, 0, 4], [3, 7, 2, 6]]),
+])
+def test_the_skewed_tile_of_numbers(unit_bits, numbers):
+    """The last bit, that of y, is added to the lowest bit of x that is in no number."""
+    skewed, plain = Interlace(unit_bits, 8, 8, skew=True), Interlace(unit_bits, 8, 8)
+    rows, columns = len(numbers), len(numbers[0])
+    for y in range(8):
+        for x in range(8):
+            assert skewed.unit(x, y) == numbers[y % rows][x % columns]
+            assert skewed.unit(x, y) >> 1 == plain.unit(x, y) >> 1
+            assert skewed.address(x, y) == plain.address(x, y)
+
+
+@given(st.integers(1, 6), st.data())
+def test_a_skewed_unit_is_a_lattice_with_every_other_row_shifted(unit_bits, data):
+    interlace = Interlace(unit_bits, 32, 32, skew=True)
+    unit = data.draw(st.integers(0, interlace.units - 1))
+    assert interlace.shifted(0) and not interlace.shifted(1)
+    across, down = (1 << bits for bits in interlace.stride_bits(0))
+    assert across * down == interlace.units
+    y, x = np.mgrid[:32, :32]
+    inside = interlace.unit(x, y) == unit
+    first_x, first_y = x[y == y[inside].min()][inside[y == y[inside].min()]][0], y[inside].min()
+    shift = ((y - first_y) // down % 2) * (across // 2)
+    assert (inside == (((x - first_x - shift) % across == 0) & (y % down == first_y))).all()
+
+
+@given(st.integers(0, 6), st.booleans(), st.data())
+def test_aligned_blocks_are_lattices(unit_bits, skew, data):
+    interlace = Interlace(unit_bits, 32, 32, skew=skew)
+    block_bits = data.draw(st.integers(int(skew and unit_bits > 0), unit_bits))
     block = data.draw(st.integers(0, (1 << unit_bits - block_bits) - 1))
     across, down = (1 << bits for bits in interlace.stride_bits(block_bits))
     assert across * down << block_bits == interlace.units
@@ -115,7 +146,8 @@ def test_a_share_is_a_lattice_of_squares(interlace):
     assert across * down << interlace.share_bits == interlace.units
     y, x = np.mgrid[: interlace.height, : interlace.width]
     element = interlace.unit(x, y) >> interlace.share_bits
-    column, row = x // side % across, y // side % down
+    shift = interlace.shifted(interlace.share_bits) * (y // side // down % 2 * (across // 2))
+    column, row = (x // side + shift) % across, y // side % down
     # One processing element for each place in the lattice.
     pairs = {(int(e), int(c), int(r)) for e, c, r in zip(element.flat, column.flat, row.flat,
                                                        strict=True)}
@@ -130,15 +162,17 @@ def test_two_units_of_a_processing_element_alternate_along_its_rows():
 @settings(deadline=None)
 @given(INTERLACES)
 def test_scan_reads(interlace):
-    """A unit reads each of its pixels of a line once; ``pitch`` of them at worst."""
+    """A unit reads each of its pixels of a line once; ``scan_reads`` of them at worst."""
     y, x = np.mgrid[: interlace.height, : interlace.width]
     unit = interlace.unit(x, y)
-    assert max(np.bincount(line).max() for line in unit) == interlace.pitch
+    assert max(np.bincount(line).max() for line in unit) == interlace.scan_reads
     group = 1 << interlace.group_bits
     for line in unit:
         for start in range(0, interlace.width, group):
             part = line[start:start + group]
             assert len(set(part.tolist())) == len(part)
+    if interlace.skew_bit is not None:
+        return
     # Larger groups would hold two pixels of one unit.
     first = unit[0, : 2 * group]
     assert len(first) < 2 * group or len(set(first.tolist())) < len(first)
@@ -149,7 +183,18 @@ def test_scan_reads(interlace):
 def test_scan_reads_of_sixteen_processing_elements(block_bits, share_bits, pitch):
     interlace = Interlace(4 + max(1, share_bits), 512, 512, block_bits=block_bits,
                           share_bits=share_bits)
-    assert interlace.pitch == pitch
+    assert interlace.scan_reads == interlace.pitch == pitch
+
+
+def test_skewed_units_read_half_as_often_in_a_line():
+    plain, skewed = (Interlace(5, 512, 512, skew=skew) for skew in (False, True))
+    assert (plain.scan_reads, skewed.scan_reads) == (128, 64)
+    assert plain.words == skewed.words
+
+
+def test_squares_are_not_skewed():
+    with pytest.raises(ValueError, match="block_bits 0"):
+        Interlace(3, 8, 8, block_bits=1, skew=True)
 
 
 @pytest.mark.parametrize(("unit_bits", "block_bits", "share_bits"), [

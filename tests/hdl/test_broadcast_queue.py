@@ -12,8 +12,10 @@ from cardcage.hdl.broadcast_queue import BroadcastQueue
 from cardcage.hdl.layouts import Operation
 
 #: Offset and mask in x, then in y, of the owned pixels.
+#: The last one's rows are shifted in turn: a column of either kind counts.
 LATTICES = {"everything": (0, 0, 0, 0), "every other row": (0, 0, 1, 1),
-            "one of eight": (1, 1, 2, 3), "one of sixteen": (2, 3, 3, 3)}
+            "one of eight": (1, 1, 2, 3), "one of sixteen": (2, 3, 3, 3),
+            "one of sixteen, skewed": (6, 7, 1, 1)}
 
 
 class Announcer(Agent):
@@ -44,7 +46,8 @@ class Announcer(Agent):
 
 
 def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause), depth=16):
-    configuration = replace(small_machine("PM" + 15 * "M", 16, 16), fifo_depth=depth)
+    skew = "skewed" in kind
+    configuration = replace(small_machine("PM" + 15 * "M", 16, 16), fifo_depth=depth, skew=skew)
     x_offset, x_mask, y_offset, y_mask = LATTICES[kind]
     display_list = random_triangles(f"{kind} {seed}", 60, width=16, height=16)
     triangles = prepared_values(configuration, prepare(configuration, display_list))
@@ -56,7 +59,7 @@ def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause), depth=16):
             kept.append((Operation.FRAME_START, None))
         packets.append({"operation": Operation.DRAW, "body": {"draw": triangle}})
         rows = [y for y in range(triangle["top"], 16) if (y - y_offset) & y_mask == 0]
-        columns = any((x - x_offset) & x_mask == 0
+        columns = any((x - x_offset) & (x_mask >> skew) == 0
                       for x in range(triangle["left"], triangle["right"]))
         if not whole or (columns and rows and rows[0] < triangle["bottom"]):
             kept.append((Operation.DRAW, (triangle, rows[0] if rows else None)))
@@ -69,7 +72,7 @@ def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause), depth=16):
 
     def lines(ctx, clock):
         ctx.set(dut.lattice, {"x_offset": x_offset, "x_mask": x_mask, "y_offset": y_offset,
-                              "y_mask": y_mask})
+                              "y_mask": y_mask, **({"shifted": 1} if skew else {})})
         ctx.set(dut.whole, whole)
 
     simulate(dut, Drive(lines), announcer, operations_sink, planes_sink, after=4)

@@ -179,11 +179,18 @@ def test_numbers(column, kinds, others):
     assert {number: name for name, number in documented.items() if name == NOTHING} == others
 
 
-def test_unit_numbers():
-    for row in table("units"):
-        order = Interlace(int(row["units"]).bit_length() - 1, 8, 8).bit_order
+@pytest.mark.parametrize("skewed", [False, True])
+def test_unit_numbers(skewed):
+    (rows,) = [rows for header, rows in TABLES.items()
+               if header[0] == "units" and ("skewed" in header[1]) == skewed]
+    assert len(rows) == 5
+    for row in rows:
+        interlace = Interlace(int(row["units"]).bit_length() - 1, 8, 8, skew=skewed)
+        order = [f"{axis}{bit}" for axis, bit in interlace.bit_order]
+        if interlace.skew_bit is not None:
+            order[-1] += f"^x{interlace.skew_bit}"
         (documented,) = [row[name] for name in row if name != "units"]
-        assert documented.replace(NOTHING, "").split() == [f"{axis}{bit}" for axis, bit in order]
+        assert documented.replace(NOTHING, "").split() == order
 
 
 def test_unit_numbers_in_squares():

@@ -1,5 +1,7 @@
 """Pixel ↔ unit arithmetic: exhaustive over small pictures, for every number of units."""
 
+from dataclasses import replace
+
 import pytest
 from hdl_bench.bench import evaluate
 from hdl_bench.pictures import small_machine
@@ -120,21 +122,27 @@ SQUARES = [("PM", 4, 16), ("PMM", 2, 16), ("PMMMM", 2, 16), ("PMM", 8, 8), ("PMM
            ("PM", 32, 4)]
 
 
+#: The same, in no squares but skewed.
+SKEWED = [("PM", None, units) for units in UNITS]
+
+
 def squares(cards, block, units, picture):
-    """The machine, and the interlace that it settles on with so many units."""
+    """The machine, and the interlace that it settles on with so many units; skewed where there
+    are no squares."""
     width, height, words = picture
-    configuration = small_machine(cards, width, height, words=words, block=block,
-                                  maximum_units=units)
+    shape = {"skew": True} if block is None else {"block": block}
+    configuration = small_machine(cards, width, height, words=words, maximum_units=max(units, 2),
+                                  **shape)
     return configuration, interlace_for(
         width, height, words=words, units=units, block_bits=configuration.square_bits,
-        share_bits=configuration.share_bits)
+        share_bits=configuration.share_bits, skew=configuration.skew)
 
 
 @pytest.mark.parametrize("picture", PICTURES, ids=str)
-@pytest.mark.parametrize(("cards", "block", "units"), SQUARES)
-def test_pixels_in_squares(cards, block, units, picture):
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + SKEWED)
+def test_pixels_in_squares_and_skewed(cards, block, units, picture):
     """Address and scan, pixel by pixel: each lies in the word that is fetched before it is shown,
-    and no unit reads the scan more often than ``pitch`` says."""
+    and no unit reads the scan more often than ``scan_reads`` says."""
     configuration, interlace = squares(cards, block, units, picture)
     where, scan = (PixelAddress(configuration=configuration),
                    ScanAddress(configuration=configuration))
@@ -168,7 +176,7 @@ def test_pixels_in_squares(cards, block, units, picture):
                         reads[unit] += 1
                     assert ctx.get(scan.selected) == (unit == interlace.unit(*place))
                 assert held[interlace.unit(*place)] == interlace.address(*place)
-            assert max(reads) <= interlace.pitch
+            assert max(reads) <= interlace.scan_reads
 
     evaluate(where, pixels)
     evaluate(scan, lines)
@@ -200,23 +208,25 @@ def test_a_share_is_a_lattice_of_squares(cards, block, units):
     evaluate(dut, steps)
 
 
-def lattice(x_offset, y_offset, across, down, size=16):
-    return {(x, y) for y in range(y_offset, size, down) for x in range(x_offset, size, across)}
+def lattice(x_offset, y_offset, across, down, shifted=False, size=16):
+    return {(x, y) for number, y in enumerate(range(y_offset, size, down))
+            for x in range((x_offset + shifted * number * across // 2) % across, size, across)}
 
 
-def test_lattice_blocks_tile_every_domain():
-    configuration = machine(16, 16, 256)
+@pytest.mark.parametrize(("skew", "bits"), [(False, (2, 2)), (True, (3, 1))])
+def test_lattice_blocks_tile_every_domain(skew, bits):
+    configuration = replace(machine(16, 16, 256), skew=skew)
     dut = LatticeBlock(configuration=configuration)
-    x_bits, y_bits = len(dut.lattice.x_offset), len(dut.lattice.y_offset)
-    assert (x_bits, y_bits) == (2, 2)
+    assert (len(dut.lattice.x_offset), len(dut.lattice.y_offset)) == bits
 
     def steps(ctx):
         for units in UNITS:
             ctx.set(dut.total, units)
+            interlace = interlace_for(16, 16, words=256, units=units, skew=skew)
             pixels = {unit: set() for unit in range(units)}
             for y in range(16):
                 for x in range(16):
-                    pixels[unit_of(units, x, y)].add((x, y))
+                    pixels[interlace.unit(x, y)].add((x, y))
             for first in range(units):
                 for end in range(first + 1, units + 1):
                     check_domain(ctx, pixels, first, end)
@@ -234,7 +244,9 @@ def test_lattice_blocks_tile_every_domain():
             assert first % (2 * size) or first + 2 * size > end
             owned = ctx.get(dut.lattice)
             assert owned.x_mask + 1 == 1 << owned.x_stride_bits
-            found = lattice(owned.x_offset, owned.y_offset, owned.x_mask + 1, owned.y_mask + 1)
+            # Of a larger block the offset has bits that the mask leaves out.
+            found = lattice(owned.x_offset & owned.x_mask, owned.y_offset & owned.y_mask,
+                            owned.x_mask + 1, owned.y_mask + 1, skew and owned.shifted)
             assert found == set.union(*(pixels[unit] for unit in range(first, after)))
             blocks.append(size)
             first = after

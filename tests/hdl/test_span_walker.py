@@ -20,8 +20,11 @@ from cardcage.hdl.span_walker import SpanWalker
 
 def stride(interlace, units):
     """Distances in x and y between the pixels of a block of ``units`` of the machine's units, or
-    between its squares, where processing elements interlace in these."""
+    between its squares, where processing elements interlace in these, or between its rows, where
+    these are shifted."""
     axes = {1: "", 2: "y", 4: "xy", 8: "xyy", 16: "xyxy"}[interlace.units >> interlace.share_bits]
+    if interlace.skew and units == 1:
+        axes = axes[:-1] + "x" * (interlace.units > 1)
     fixed = axes[: (interlace.units // units).bit_length() - 1]
     return 1 << fixed.count("x"), 1 << fixed.count("y")
 
@@ -174,10 +177,10 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("seed", range(2))
-def test_spans_are_the_covered_pixels_of_the_domain(machine, seed):
+@pytest.mark.parametrize(("seed", "skew"), [(0, False), (1, False), (2, True)])
+def test_spans_are_the_covered_pixels_of_the_domain(machine, seed, skew):
     cards, (first, end), words, (width, height) = MACHINES[machine]
-    configuration = small_machine(cards, width, height, words=words)
+    configuration = small_machine(cards, width, height, words=words, skew=skew)
     display_list = random_triangles(f"{machine} {seed}", 60, width=width, height=height,
                                     extreme=True)
     _, expected, _, _ = run(configuration, display_list, first, end,
@@ -186,9 +189,10 @@ def test_spans_are_the_covered_pixels_of_the_domain(machine, seed):
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-def test_latency_and_throughput(machine):
+@pytest.mark.parametrize("skew", [False, True])
+def test_latency_and_throughput(machine, skew):
     cards, (first, end), words, (width, height) = MACHINES[machine]
-    configuration = small_machine(cards, width, height, words=words)
+    configuration = small_machine(cards, width, height, words=words, skew=skew)
     display_list = random_triangles(f"{machine} speed", 40, width=width, height=height)
     prepared, expected, source, found = run(configuration, display_list, first, end,
                                             (no_pause, no_pause))

@@ -46,20 +46,40 @@ def test_coarse_precision_gives_every_order_the_same_errors():
     assert (exact.depth != depth).any() and (exact.color != video).any()
 
 
-@pytest.mark.parametrize("cards", ["PMMMPM", "PMPMMPPMP", "PPMMMMMMMMPMMMMPMMPMM", "2x(PMPMMM)"])
-def test_shares_need_not_be_equal_nor_present(cards):
-    draw(random_list(8, 8, width=16, height=16), cards=cards, seed=3)
+@pytest.mark.parametrize(("cards", "skew"), [
+    ("PMMMPM", False), ("PMPMMPPMP", False), ("PPMMMMMMMMPMMMMPMMPMM", False),
+    ("PPMMMMMMMMPMMMMPMMPMM", True), ("2x(PMPMMM)", False)])
+def test_shares_need_not_be_equal_nor_present(cards, skew):
+    draw(random_list(8, 8, width=16, height=16), cards=cards, seed=3, skew=skew)
 
 
-@pytest.mark.parametrize("units", [1, 2, 4, 8, 16])
-def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units):
+def test_a_skewed_interlace_gives_the_same_picture():
+    """Of one unit each, of pairs, and of what is neither; and with set-up by either side."""
+    options = {"PMPMMM": {"setup": "hardware"}, "PMMMM": {"memory_ports": 2}}
+    skewed = {cards: draw(LIST, cards=cards, skew=True, **options.get(cards, {}))
+              for cards in ("PMM", "4x(PM)", "2x(PMM)", *options)}
+    for cards, different in (("4x(PM)", True), ("2x(PMM)", False)):
+        plain = draw(LIST, cards=cards)
+        for simulation in skewed.values():
+            np.testing.assert_array_equal(simulation.video, plain.video)
+            np.testing.assert_array_equal(simulation.depth, plain.depth)
+        # The pixels of one unit are others, those of a pair the same.
+        one, other = ([element.fragments for element in simulation.work]
+                      for simulation in (plain, skewed[cards]))
+        assert (one != other) == different
+
+
+@pytest.mark.parametrize(("units", "skew"), [
+    (1, False), (2, False), (4, False), (8, False), (16, False), (8, True)])
+def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units, skew):
     """32 words: eight units hold the 256 pixels, one unit an eighth of them."""
-    simulation = draw(LIST, cards="P" + "M" * units, words=32, maximum_units=16)
+    simulation = draw(LIST, cards="P" + "M" * units, words=32, maximum_units=16, skew=skew)
     resolutions = {1: (8, 4), 2: (8, 8), 4: (16, 8), 8: (16, 16), 16: (16, 16)}
     assert (simulation.interlace.width, simulation.interlace.height) == resolutions[units]
 
 
-@pytest.mark.parametrize(("width", "height", "cards"), [(13, 7, "PMMPMM"), (5, 9, "PMMMMPMMMM"),
-                                                       (1, 1, "PMM"), (3, 2, "4x(PMM)")])
-def test_sizes_that_are_no_multiple_of_the_interlace(width, height, cards):
-    draw(random_list(9, 8, width=width, height=height), cards=cards)
+@pytest.mark.parametrize(("width", "height", "cards", "skew"), [
+    (13, 7, "PMMPMM", False), (5, 9, "PMMMMPMMMM", False), (1, 1, "PMM", False),
+    (3, 2, "4x(PMM)", False), (13, 7, "PMPMMM", True), (3, 2, "8x(PM)", True)])
+def test_sizes_that_are_no_multiple_of_the_interlace(width, height, cards, skew):
+    draw(random_list(9, 8, width=width, height=height), cards=cards, skew=skew)

@@ -207,6 +207,7 @@ def test_no_frame(place, engine, error):
     (["--words", "0"], "words"),
     (["--block", "6"], "block: must be a power of two"),
     (["--block", "64"], "block"),
+    (["--block", "4", "--skew"], "skew: in squares of 4x4 pixels"),
     (["--cards", "PMMMPM", "--block", "4"], "block: squares of 4x4 pixels want as many memory"),
     (["--clocks-per-pixel", "1"], "clocks-per-pixel"),
     (["--random-memory", "-1"], "random-memory"),

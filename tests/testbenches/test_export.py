@@ -102,12 +102,14 @@ def test_memory_ports():
 
 
 def test_the_interlace_is_described():
-    for block, reads in (("1", 8), ("4", 4)):
-        assert run("--cards", "4x(PMM)", "--size", "16x16", "--fraction-bits", 28, "--block", block,
+    for options, block, reads in ((["--block", "1"], 1, 8), (["--block", "4"], 4, 4),
+                                  (["--skew"], 1, 4)):
+        assert run("--cards", "4x(PMM)", "--size", "16x16", "--fraction-bits", 28, *options,
                    "--component", "memory_unit", "-o", "unit.v").exit_code == 0
         configuration = json.loads(Path("unit.json").read_text())["configuration"]
-        assert configuration["block"] == int(block)
+        assert (configuration["block"], configuration["skew"]) == (block, "--skew" in options)
         assert configuration["scan_reads_per_line"] == reads
+        assert f" {' '.join(options)} " in Path("unit.v").read_text()
 
 
 @pytest.mark.parametrize("arguments", [[*TINY], [SCENE, *TINY], [*TINY, "--component", "survey"]])
