@@ -198,3 +198,32 @@ def test_mutant_in_squares_is_caught(monkeypatch, name):
     mutate(monkeypatch, *MUTANTS_IN_SQUARES[name])
     with pytest.raises(FAILURES):
         check_squares()
+
+
+#: The same in a skewed machine of one unit each.
+MUTANTS_SKEWED = {
+    "a unit number without the bit of x": (
+        "interlace", "PixelAddress", ["fragment_stepper"],
+        "number[0] ^= x[interlace.skew_bit]", "pass"),
+    "rows that are not shifted": (
+        "lattice", "row_offset", ["span_clip"],
+        "further = lattice.shifted &", "further = 0 &"),
+    "a filter that looks for the columns of every other row": (
+        "lattice", "rows_mask", ["broadcast_queue"],
+        "lattice.x_mask >> 1, lattice.x_mask)", "lattice.x_mask, lattice.x_mask)"),
+}
+
+
+def check_skewed():
+    draw(random_list(11, 20), cards="4x(PM)", skew=True, seed=2)
+
+
+def test_the_machine_itself_passes_skewed():
+    check_skewed()
+
+
+@pytest.mark.parametrize("name", MUTANTS_SKEWED)
+def test_skewed_mutant_is_caught(monkeypatch, name):
+    mutate(monkeypatch, *MUTANTS_SKEWED[name])
+    with pytest.raises(FAILURES):
+        check_skewed()
