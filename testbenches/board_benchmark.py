@@ -30,10 +30,17 @@ from .text_table import TextTable
 
 def measure(parts: Mapping[str, Part], seeds: Sequence[int],
             step: Callable[[str], None] = lambda doing: None) -> dict[str, Placement]:
-    """Place each of ``parts``, whose keys are those of ``BOARDS``; ``step`` is called before each
-    seed.  Raises ``InputError`` where the tools are missing or fail."""
-    return {name: place_and_route(part, seeds, lambda doing, name=name: step(f"{name}: {doing}"))
-            for name, part in parts.items()}
+    """Place each of ``parts``, by names of ``BOARDS``.
+
+    ``step`` is called before each synthesis and each seed.  Raises ``InputError`` where the tools
+    are missing or fail.
+    """
+    placements = {}
+    for name, part in parts.items():
+        step(f"{name}: synthesising")
+        placements[name] = place_and_route(
+            part, seeds, lambda doing, name=name: step(f"{name}: {doing}"))
+    return placements
 
 
 def board_table(placements: Mapping[str, Placement], title: str) -> TextTable:
@@ -89,7 +96,7 @@ def main(names: tuple[str, ...], cards: str, size: tuple[int, int], seeds: int,
     parts = {name: BOARDS[name].part(cards, width, height) for name in names}
     with ExitStack() as outputs:
         file = json_file and outputs.enter_context(atomic_file(json_file, "--json"))
-        with step_bar(len(parts) * seeds) as step:
+        with step_bar(len(parts) * (1 + seeds)) as step:
             placements = measure(parts, range(1, seeds + 1), step)
         if file:
             facts = board_facts(parts, placements)
