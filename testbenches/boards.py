@@ -57,8 +57,8 @@ class Board:
 #: By the names that people choose them by.
 BOARDS = {
     "element": Board("processing element, flat", "processing_element"),
-    "domain": Board("with its memory units, flat", "domain", domain),
-    "domain-gouraud": Board("with its memory units, Gouraud", "domain", domain,
+    "domain": Board("processing element, memory units, flat", "domain", domain),
+    "domain-gouraud": Board("processing element, memory units, Gouraud", "domain", domain,
                             {"shading": "gouraud"}),
     "unit-1-port": Board("memory unit, 1 port", "memory_unit", memory_unit, {"memory_ports": 1}),
     "unit-2-ports": Board("memory unit, 2 ports", "memory_unit", memory_unit),
