@@ -8,13 +8,11 @@ from typing import Any, Literal
 from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
 from .display_list import DisplayList, coordinate_bits
 from .errors import InputError
-from .fixed import MAX_FRACTION_BITS
+from .fixed import MAX_FRACTION_BITS, guard_bits, stays_in_range
 from .interlace import Interlace, interlace_for
 from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .setup import (
     COLOR_BITS,
-    color_word_bits,
-    depth_word_bits,
     edge_column_bits,
     edge_fraction_bits,
     edge_remainder_bits,
@@ -66,7 +64,7 @@ class MachineConfiguration:
     ``edge_column_bits``     of a signed column on an edge's own rows
     ``edge_remainder_bits``  of an edge's height, in sub-pixel units
     ``edge_fraction_bits``   of a carried edge: as many as make its column exact on every row
-    ``depth_integer_bits``   of carried depth, its sign included
+    ``depth_integer_bits``   of carried depth, its sign included where it has one
     ``channel_integer_bits`` of a carried colour channel, likewise
 
     Raises ``InputError`` where a number is out of range or the cards do not make a machine.
@@ -215,6 +213,11 @@ class MachineConfiguration:
                              block_bits=self.square_bits, share_bits=self.share_bits,
                              skew=self.skew)
 
+    @property
+    def aligned_domains(self) -> bool:
+        """Every domain that draws is one aligned block of units, a power of two of them."""
+        return self.block > 1 or self.maximum_units <= 2
+
     # Widths: each with its reason
 
     @property
@@ -250,17 +253,26 @@ class MachineConfiguration:
         return self.edge_column_bits + self.edge_fraction_bits
 
     @property
+    def stays_in_range(self) -> bool:
+        """Interpolants err by so little that they are carried unsigned, and never saturate."""
+        return stays_in_range(self.fraction_bits, self.width + self.height - 2)
+
+    @property
     def depth_plane_bits(self) -> int:
         """Carried depth; sums wrap, values at covered pixels fit with their error."""
-        if self.depth_integer_bits:
-            return self.depth_integer_bits + self.fraction_bits
-        return depth_word_bits(self.depth_bits, self.fraction_bits, self.width, self.height)
+        return self._plane_bits(self.depth_integer_bits, self.depth_bits)
 
     @property
     def channel_plane_bits(self) -> int:
-        if self.channel_integer_bits:
-            return self.channel_integer_bits + self.fraction_bits
-        return color_word_bits(self.fraction_bits, self.width, self.height)
+        return self._plane_bits(self.channel_integer_bits, CHANNEL_BITS)
+
+    def _plane_bits(self, integer_bits: int, value_bits: int) -> int:
+        if not integer_bits:
+            integer_bits = value_bits
+            if not self.stays_in_range:
+                integer_bits += guard_bits(value_bits, self.fraction_bits,
+                                           self.width + self.height - 2)
+        return integer_bits + self.fraction_bits
 
     @property
     def depth_background(self) -> int:

@@ -150,6 +150,16 @@ def guard_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
     return ((1 << value_bits) - 1 + error).bit_length() + 1 - value_bits
 
 
+def stays_in_range(fraction_bits: int, extent: int) -> bool:
+    """Whether carried values, once floored, lie between the vertices' at every covered pixel.
+
+    The start is half a unit high (``exact_fraction_bits``), and the unrounded plane is never
+    outside: off by less than 1/4 the floor cannot be either.  Then there is nothing to
+    saturate, no bit is needed to tell too low from too high, and none for a sign.
+    """
+    return 2 * (1 + extent) < 1 << fraction_bits
+
+
 def check_fraction_bits(fraction_bits: int) -> None:
     """Raise ``InputError`` unless it is a whole number from 0 to ``MAX_FRACTION_BITS``."""
     check_whole("fraction bits", fraction_bits, 0, MAX_FRACTION_BITS)

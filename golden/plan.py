@@ -115,14 +115,14 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         fraction_bits = needs.exact_fraction_bits
         if max_error:
             fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
+    machine = replace(machine, fraction_bits=fraction_bits)
     planned = replace(machine, **{
-        "fraction_bits": fraction_bits,
         "coordinate_bits": needs.coordinate_bits,
         "edge_column_bits": needs.edge_column_bits,
         "edge_remainder_bits": needs.edge_remainder_bits,
         "edge_fraction_bits": needs.edge_fraction_bits,
-        "depth_integer_bits": needs.depth_integer_bits(fraction_bits),
-        "channel_integer_bits": needs.channel_integer_bits(fraction_bits),
+        "depth_integer_bits": needs.depth_integer_bits(machine),
+        "channel_integer_bits": needs.channel_integer_bits(machine),
         # Behind one that is drawn all of them can wait.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
     } | {name: value for name, value in rest.items() if name != "shading"})
@@ -205,12 +205,12 @@ def _integer(name: str, planned: MachineConfiguration, full: MachineConfiguratio
               for machine in (planned, full)]
     if name == "channel" and planned.shading == "flat":
         return PlanLine("channel integer bits", "-", str(widths[1]), "no channel is interpolated")
-    error = needs.error(planned.fraction_bits)
+    error = 0 if planned.stays_in_range else needs.error(planned.fraction_bits)
     changed = replace(full, **{f"{name}_integer_bits": widths[0]})
     return PlanLine(
         f"{name} integer bits", str(widths[0]), str(widths[1]),
         f"a vertex has up to {greatest:,}" + (f", off by up to {error:,}" if error else "")
-        + ", and a sign", triangle_bits(full) - triangle_bits(changed))
+        + ("" if planned.stays_in_range else ", and a sign"), triangle_bits(full) - triangle_bits(changed))
 
 
 def _interpolants(planned: MachineConfiguration, full: MachineConfiguration,

@@ -87,18 +87,23 @@ class SceneNeeds:
             return 0
         return ceil(error_bound(fraction_bits, self.extent))
 
-    def depth_integer_bits(self, fraction_bits: int) -> int:
+    def depth_integer_bits(self, machine: MachineConfiguration) -> int:
         """Of carried depth: at a covered pixel it lies between the vertices', but for its error.
 
-        Whatever else the sums come to, modulo a power of two they end there.
+        Whatever else the sums come to, modulo a power of two they end there.  Only the size and
+        the fraction bits of ``machine`` matter.
         """
-        error = self.error(fraction_bits)
-        return _signed_bits(-error, self.greatest_depth + error)
+        return self._integer_bits(machine, self.greatest_depth)
 
-    def channel_integer_bits(self, fraction_bits: int) -> int:
+    def channel_integer_bits(self, machine: MachineConfiguration) -> int:
         """Of a carried channel, likewise."""
-        error = self.error(fraction_bits)
-        return _signed_bits(-error, self.greatest_channel + error)
+        return self._integer_bits(machine, self.greatest_channel)
+
+    def _integer_bits(self, machine: MachineConfiguration, greatest: int) -> int:
+        if machine.stays_in_range:
+            return max(1, greatest.bit_length())
+        error = self.error(machine.fraction_bits)
+        return _signed_bits(-error, greatest + error)
 
 
 def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:
@@ -221,8 +226,8 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
         ("edge_column_bits", needs.edge_column_bits),
         ("edge_remainder_bits", needs.edge_remainder_bits),
         ("edge_fraction_bits", needs.edge_fraction_bits),
-        ("depth_plane_bits", needs.depth_integer_bits(bits) + bits),
-        ("channel_plane_bits", needs.channel_integer_bits(bits) + bits),
+        ("depth_plane_bits", needs.depth_integer_bits(configuration) + bits),
+        ("channel_plane_bits", needs.channel_integer_bits(configuration) + bits),
     ):
         if field == "channel_plane_bits" and configuration.shading == "flat":
             continue

@@ -62,7 +62,8 @@ class ProcessingElementLines(wiring.Signature):
     A read and a write can go to two different units in the same clock, or to one
     with two ports.  Each takes place in a clock in which its ``valid`` is high
     and its busy line is low; a request that no unit answers is never busy.  A read
-    sees every write that took place before it or in the same clock.
+    sees every write that took place before it; what it sees of one in the same clock,
+    which only units with two ports take, is unknown.  Those are never busy.
 
     Members
     -------
@@ -144,8 +145,6 @@ class PictureLines(wiring.Signature):
     depth_tag: Out(tag_bits)
     color_tag: Out(tag_bits) [2]
         The current tags; never 0.
-    background: Out(24)
-        What the front colour shows for a word with another tag.
     initialise: Out(1)
         Begin a pass that gives tag 0 to every lane of every word; only while ``swept``.
     sweep: Out(1)
@@ -160,7 +159,6 @@ class PictureLines(wiring.Signature):
             "front": Out(1),
             "depth_tag": Out(configuration.tag_bits),
             "color_tag": Out(configuration.tag_bits).array(2),
-            "background": Out(3 * CHANNEL_BITS),
             "initialise": Out(1),
             "sweep": Out(1),
             "swept": In(1),
@@ -186,8 +184,10 @@ class ScanLines(wiring.Signature):
     show: Out(scan_address_layout)
         The pixel on the video bus: ``fetch`` of three clocks ago.
     video: In(24)
-        Red in the low byte, then green, blue: from the unit that holds the shown pixel, others
-        drive 0 (wired or).
+        Red in the low byte, then green, blue: from the unit that holds the shown pixel, if that
+        has been drawn; others drive 0 (wired or).
+    drawn: In(1)
+        It has been drawn since its frame started (wired or); the background else.
     """
 
     def __init__(self, configuration: MachineConfiguration):
@@ -195,4 +195,5 @@ class ScanLines(wiring.Signature):
             "fetch": Out(scan_address_layout(configuration)),
             "show": Out(scan_address_layout(configuration)),
             "video": In(3 * CHANNEL_BITS),
+            "drawn": In(1),
         })

@@ -5,8 +5,15 @@ from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
-from .lattice import first_owned, lattice_layout, rows_mask
-from .layouts import Operation, broadcast_layout, operation_layout, outline_layout, planes_layout
+from .lattice import first_owned, lattice_layout, next_owned, rows_mask
+from .layouts import (
+    Operation,
+    broadcast_layout,
+    outline_layout,
+    planes_layout,
+    row_shape,
+    walked_outline_layout,
+)
 
 __all__ = ["BroadcastQueue"]
 
@@ -17,10 +24,15 @@ class BroadcastQueue(wiring.Component):
     A triangle whose bounding box holds no pixel of the lattice is passed over as
     it is announced, and costs nothing; where the domain is no single lattice all
     are kept.  Of a lattice with shifted rows, one whose box holds their columns is
-    kept, in whichever row.  Rows and edges wait apart from the interpolants: those are needed
-    later, span by span, and stay at their output until a triangle's last one.
+    kept, in whichever row.  Rows and edges wait apart from the interpolants: those
+    are needed later, pixel by pixel, and stay at their output until a triangle's
+    last one.
 
-    Latency: three clocks.  Throughput: a word a clock.
+    Anything but a triangle waits in a place of its own.  Nothing is taken behind it
+    until it is gone, so it comes after the triangles before it and before those
+    after it; and what looks after such operations is not in the triangles' way.
+
+    Latency: three clocks; two for an operation.  Throughput: a triangle a clock.
 
     Members
     -------
@@ -30,11 +42,13 @@ class BroadcastQueue(wiring.Component):
         There is room.
     lattice: In(lattice_layout), whole: In(1)
         The pixels of the domain, where it is one block of units.
-    operations: Out(stream of operation_layout)
+    triangles: Out(stream of walked_outline_layout)
     planes: Out(stream of planes_layout)
-        Of the triangles among the operations, each at least as early as its operation.
+        Of the triangles, each at least as early as its outline.
+    operations: Out(stream of Operation)
+        What is no triangle; all triangles before it, and their interpolants, have been taken.
     empty: Out(1)
-        No operation waits.
+        Nothing waits.
 
     Fuchs & Johnson leave the processing elements waiting for one another with each
     polygon; these queues are what lets each of them go on.
@@ -50,8 +64,9 @@ class BroadcastQueue(wiring.Component):
             "ready": Out(1),
             "lattice": In(lattice_layout(configuration)),
             "whole": In(1),
-            "operations": Out(stream.Signature(operation_layout(configuration))),
+            "triangles": Out(stream.Signature(walked_outline_layout(configuration))),
             "planes": Out(stream.Signature(planes_layout(configuration))),
+            "operations": Out(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "empty": Out(1),
         })
 
@@ -62,8 +77,8 @@ class BroadcastQueue(wiring.Component):
         # One place is the output register, into which a word moves a clock later: with two in all,
         # the second of two words in a row would find the other place taken.
         places = max(depth, 3)
-        m.submodules.operations = operations = fifo.SyncFIFOBuffered(
-            width=operation_layout(configuration).size, depth=places)
+        m.submodules.triangles = triangles = fifo.SyncFIFOBuffered(
+            width=walked_outline_layout(configuration).size, depth=places)
         m.submodules.planes = planes = fifo.SyncFIFOBuffered(
             width=planes_layout(configuration).size, depth=places)
 
@@ -72,28 +87,43 @@ class BroadcastQueue(wiring.Component):
         first_row = first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)
         first_column = first_owned(triangle.left, lattice.x_offset,
                                    rows_mask(lattice, configuration), square_bits)
+        kept = Signal(outline_layout(configuration), reset_less=True)
+        kept_row, second_row = (Signal(row_shape(configuration), name=name, reset_less=True)
+                                for name in ("kept_row", "second_row"))
         # The interpolants are the last field of a triangle: without them the rest is its start.
         outline = Value.cast(packet.body)[:outline_layout(configuration).size]
         assert len(outline) + planes_layout(configuration).size == triangle.shape().size
 
-        arrived, drawn, in_rows, in_columns = (
-            Signal(name=name) for name in ("arrived", "drawn", "in_rows", "in_columns"))
+        arrived, in_rows, in_columns, waits, drained = (
+            Signal(name=name) for name in ("arrived", "in_rows", "in_columns", "waits", "drained"))
+        operation = self.operations
+        # A triangle's interpolants are there as long as its outline, and longer.
+        m.d.sync += drained.eq((planes.level == 0) & ~self.strobe & ~arrived)
         m.d.sync += [
-            arrived.eq(self.strobe),
-            drawn.eq(is_triangle),
+            arrived.eq(self.strobe & is_triangle),
             in_rows.eq(first_row < triangle.bottom),
             in_columns.eq(first_column < triangle.right),
-            operations.w_data.eq(Cat(packet.operation, outline, first_row)),
+            kept.eq(outline),
+            kept_row.eq(first_row),
             planes.w_data.eq(triangle.planes),
         ]
         m.d.comb += [
-            # Room for this word and for one that has just arrived.
-            self.ready.eq((operations.level < depth - 1) & (planes.level < depth - 1)),
-            operations.w_en.eq(arrived & (~drawn | ~self.whole | (in_rows & in_columns))),
-            planes.w_en.eq(operations.w_en & drawn),
-            self.empty.eq((operations.level == 0) & ~arrived),
+            second_row.eq(next_owned(kept_row, lattice.y_mask, square_bits)),
+            triangles.w_data.eq(Cat(kept, kept_row, second_row, second_row >= kept.bottom)),
         ]
-        for queue, out in ((operations, self.operations), (planes, self.planes)):
+        with m.If(self.strobe & ~is_triangle):
+            m.d.sync += [waits.eq(1), operation.payload.eq(packet.operation)]
+        with m.Elif(operation.valid & operation.ready):
+            m.d.sync += waits.eq(0)
+        m.d.comb += [
+            # Room for this word and for one that has just arrived.
+            self.ready.eq((planes.level < depth - 1) & ~waits),
+            triangles.w_en.eq(arrived & (~self.whole | (in_rows & in_columns))),
+            planes.w_en.eq(triangles.w_en),
+            operation.valid.eq(waits & drained),
+            self.empty.eq(~waits & drained),
+        ]
+        for queue, out in ((triangles, self.triangles), (planes, self.planes)):
             m.d.comb += [
                 out.valid.eq(queue.r_rdy),
                 out.payload.eq(queue.r_data),

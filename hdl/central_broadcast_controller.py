@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden import commands
 from ..golden.commands import Fault, Opcode, ResponseKind
-from ..golden.configuration import MachineConfiguration
+from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
 from .backplane import BroadcastLines, Connector, PictureLines
 from .frame_tags import FrameTags
 from .layouts import Operation, broadcast_layout, response_layout
@@ -50,6 +50,8 @@ class CentralBroadcastController(wiring.Component):
     scan_start: In(1)
         A scan begins.
     pictures: Out(PictureLines)
+    background: Out(24)
+        Of the picture shown: red in the low byte, then green, blue.
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
     """
@@ -65,6 +67,7 @@ class CentralBroadcastController(wiring.Component):
             "broadcast": Out(BroadcastLines(configuration)),
             "scan_start": In(1),
             "pictures": Out(PictureLines(configuration)),
+            "background": Out(3 * CHANNEL_BITS),
             **({"more": Out(1)} if configuration.observe else {}),
         })
 
@@ -90,10 +93,10 @@ class CentralBroadcastController(wiring.Component):
         unequal = Signal()
         self._count_owned(m, owned, unequal)
         pictures = self.pictures
-        backgrounds = [Signal.like(pictures.background, name=f"background_{place}")
+        backgrounds = [Signal.like(self.background, name=f"background_{place}")
                        for place in range(2)]
         self._tags(m)
-        m.d.comb += pictures.background.eq(Mux(pictures.front, *reversed(backgrounds)))
+        m.d.comb += self.background.eq(Mux(pictures.front, *reversed(backgrounds)))
 
         def announce(operation, then=None, *, when=1):
             """Strobe the packet as soon as all are ready."""

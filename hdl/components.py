@@ -15,6 +15,7 @@ from .fragment_stepper import FragmentStepper
 from .frame_tags import FrameTags
 from .id_increment import IdIncrement
 from .interlace import LatticeBlock, PixelAddress, ScanAddress
+from .interpolator import Interpolator
 from .line_selector import LineSelector
 from .memory_unit import MemoryUnit
 from .one_port_memory import OnePortMemory
@@ -29,12 +30,12 @@ from .result_queue import ResultQueue
 from .row_walker import RowWalker
 from .sampling_grid import SamplingGrid
 from .span_clip import SpanClip
-from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
 from .tag_sweep import TagSweep
 from .triangle_outline import TriangleOutline
 from .triangle_setup import TriangleSetup
+from .two_port_depth_test import TwoPortDepthTest
 from .two_port_memory import TwoPortMemory
 from .vertex_sort import VertexSort
 from .video_scan_generator import VideoScanGenerator
@@ -61,9 +62,9 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
     "frame_tags": lambda c: FrameTags(configuration=c),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
+    "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
-    # The processing element has three users of its lines.
-    "line_selector": lambda c: LineSelector(configuration=c, sources=3),
+    "line_selector": lambda c: LineSelector(configuration=c),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
     # That of a triangle's area.
@@ -80,12 +81,12 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
-    "span_start": lambda c: SpanStart(configuration=c),
     "span_walker": lambda c: SpanWalker(configuration=c),
     "survey": lambda c: Survey(configuration=c),
     "tag_sweep": lambda c: TagSweep(configuration=c),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),
     "triangle_setup": lambda c: TriangleSetup(configuration=c),
+    "two_port_depth_test": lambda c: TwoPortDepthTest(configuration=c),
     "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
     "vertex_sort": lambda c: VertexSort(configuration=c),

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
 from .backplane import ProcessingElementLines
-from .fragment_stepper import fragment_layout
+from .interpolator import fragment_layout
 
 __all__ = ["DepthTest"]
 
@@ -32,6 +32,7 @@ class DepthTest(wiring.Component):
     -------
     fragments: In(stream of fragment_layout)
     memory: Out(ProcessingElementLines)
+        The write address is 0 while it is not ``busy``.
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)
@@ -99,6 +100,8 @@ class DepthTest(wiring.Component):
         ]
         with m.If(write_moves):
             m.d.sync += [winning.eq(comparing & (compare.depth < nearest)), write.eq(compare)]
+            with m.If(~comparing):
+                m.d.sync += write.address.eq(0)
             with m.If(winning):
                 m.d.sync += [has_written.eq(1), written.eq(write)]
         with m.If(~self.busy):

@@ -18,7 +18,7 @@ __all__ = ["component_for", "describe"]
 
 #: The four boards and what of them states figures.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator", "span_walker", "span_start", "fragment_stepper", "depth_test",
+          "video_scan_generator", "span_walker", "fragment_stepper", "interpolator", "depth_test",
           "read_back", "response_link", "survey", "frame_tags", "tag_sweep")
 _TIMED_MEMORY = {1: "one_port_memory", 2: "two_port_memory"}  # by its ports
 
@@ -83,6 +83,7 @@ def _clock_ports(module: str) -> list[dict]:
 
 def _number_formats(configuration: MachineConfiguration) -> list[dict]:
     c, fraction = configuration, configuration.fraction_bits
+    signed = not c.stays_in_range
 
     def number(name, bits, meaning, *, signed=False, fraction_bits=0):
         """``bits`` in all; the sign, if any, counts among the integer bits."""
@@ -92,9 +93,9 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
 
     colors = [number("channel", CHANNEL_BITS, "one colour channel of a pixel")]
     if c.shading == "gouraud":
-        colors.append(number("channel_plane", c.channel_plane_bits, signed=True,
-                             fraction_bits=fraction, meaning="a channel as it is stepped, guard "
-                             "bits above; sums wrap, the value at a pixel does not"))
+        colors.append(number("channel_plane", c.channel_plane_bits, signed=signed,
+                             fraction_bits=fraction, meaning="a channel as it is interpolated; "
+                             "sums wrap, the value at a pixel does not"))
     return [
         number("vertex_coordinate", c.coordinate_bits, "x or y of a vertex, in pixels", signed=True,
                fraction_bits=c.sub_bits),
@@ -105,9 +106,8 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
                "wrap, the column on a row does not"),
         number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
         number("tag", c.tag_bits, "tag of a frame, beside each depth and colour; 0 is none's"),
-        number("depth_plane", c.depth_plane_bits, signed=True, fraction_bits=fraction,
-               meaning="depth as it is stepped, guard bits above; sums wrap, the value at a pixel "
-               "does not"),
+        number("depth_plane", c.depth_plane_bits, signed=signed, fraction_bits=fraction,
+               meaning="depth as it is interpolated; sums wrap, the value at a pixel does not"),
         *colors,
         number("unit", c.id_bits, "number of a memory unit, or how many there are"),
         number("address", c.address_bits, "word of a memory unit"),

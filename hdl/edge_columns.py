@@ -5,14 +5,12 @@ from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
+from .delay import delayed
 from .lattice import lattice_layout
+from .limb_products import limb_products, side_by_side
 from .row_walker import row_layout
 
-__all__ = ["EdgeColumns", "extent_layout", "limbs"]
-
-#: Operand bits of a multiplier block of an FPGA.
-LIMB_BITS = 18
-
+__all__ = ["EdgeColumns", "extent_layout"]
 
 def extent_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """Columns ``first`` up to, without, ``beyond`` of row ``y``, held to the screen; maybe none.
@@ -26,32 +24,6 @@ def extent_layout(configuration: MachineConfiguration) -> data.StructLayout:
         **{name: row.members[name] for name in ("y", "rows", "left", "none", "last")},
         "lattice": lattice_layout(configuration),
     })
-
-
-def limbs(m: Module, factor: Value, count: Value, *, advance: Value, name: str) -> list[Value]:
-    """``factor`` · ``count`` as addends, from multipliers that end in registers.
-
-    Products of every other limb do not overlap, so two addends hold them all.
-    """
-    products = []
-    for offset in range(0, len(factor), LIMB_BITS):
-        limb = factor[offset:offset + LIMB_BITS]
-        product = Signal(len(limb) + len(count), name=f"{name}_{offset}", reset_less=True)
-        with m.If(advance):
-            m.d.sync += product.eq(limb * count)
-        products.append((product, offset))
-    addends = []
-    for parity in (0, 1):
-        addend = Signal(len(factor), name=f"{name}_addend_{parity}")
-        place = 0
-        parts = []
-        for product, offset in products[parity::2]:
-            parts += [Const(0, offset - place), product]
-            place = offset + len(product)
-        if parts:
-            m.d.comb += addend.eq(Cat(*parts))
-            addends.append(addend)
-    return addends
 
 
 class EdgeColumns(wiring.Component):
@@ -101,23 +73,15 @@ class EdgeColumns(wiring.Component):
         with m.If(move):
             m.d.sync += stages.eq(Cat(self.rows.valid, stages))
 
-        def delayed(value, clocks, name):
-            """The field as it was so many moves ago."""
-            for stage in range(clocks):
-                later = Signal.like(value, name=f"{name}_{stage + 1}", reset_less=True)
-                with m.If(move):
-                    m.d.sync += later.eq(value)
-                value = later
-            return value
-
         for name in ("y", "rows", "left", "none", "last", "lattice"):
-            value = delayed(row[name], self.latency - 1, name)
+            value = delayed(m, row[name], self.latency - 1, name, enable=move)
             with m.If(move):
                 m.d.sync += extent[name].eq(value)
 
         columns = {name: self._column(m, row[name], count, move, name) for name, count in (
             ("long", row.rows), ("short", row.short_rows))}
-        long_left = delayed(row.long_edge_left, self.latency - 1, "long_edge_left")
+        long_left = delayed(m, row.long_edge_left, self.latency - 1, "long_edge_left",
+                            enable=move)
         left = Mux(long_left, columns["long"], columns["short"])
         right = Mux(long_left, columns["short"], columns["long"])
         with m.If(move):
@@ -126,18 +90,18 @@ class EdgeColumns(wiring.Component):
 
     def _column(self, m, edge, rows, move, name):
         """The edge's column, three moves later: products, then two sums."""
-        addends = limbs(m, edge.step, rows, advance=move, name=f"{name}_product")
-        start, first, total = (Signal(self.configuration.edge_word_bits, name=f"{name}_{part}",
-                                      reset_less=True) for part in ("start", "first", "total"))
-        rest = Signal.like(total, name=f"{name}_rest", reset_less=True)
+        words = side_by_side(limb_products(m, edge.step, rows, advance=move,
+                                           name=f"{name}_product"))
+        start = delayed(m, edge.start, 1, f"{name}_start", enable=move)
+        first, total = (Signal(self.configuration.edge_word_bits, name=f"{name}_{part}",
+                               reset_less=True) for part in ("first", "total"))
+        others = [delayed(m, word, 1, f"{name}_odd", enable=move) for word in words[1:]]
         with m.If(move):
-            m.d.sync += [
-                start.eq(edge.start),
-                first.eq(start + addends[0]),
-                rest.eq(addends[1] if len(addends) > 1 else 0),
-                total.eq(first + rest),
-            ]
+            m.d.sync += [first.eq(start + words[0]), total.eq(sum(others, first))]
         return total[self.configuration.edge_fraction_bits:].as_signed()
 
     def _held(self, column):
-        return Mux(column < 0, 0, Mux(column >= self.width, self.width, column))
+        widths = {interlace.width for interlace in self.configuration.interlaces()}
+        width = Const(widths.pop()) if len(widths) == 1 else self.width
+        magnitude = column.as_unsigned()[:-1]
+        return Mux(column < 0, 0, Mux(magnitude >= width, width, magnitude))

@@ -1,47 +1,47 @@
-"""Steps along a span: one fragment after the other."""
+"""Steps along a span: one pixel after the other."""
 
 from amaranth.hdl import *
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
-from .fixed import floor_shift, saturate, to_signed
-from .interlace import PixelAddress
-from .span_start import started_span_layout
+from ..golden.configuration import MachineConfiguration
+from .layouts import span_layout
 
-__all__ = ["FragmentStepper", "fragment_layout"]
+__all__ = ["FragmentStepper", "pixel_layout"]
 
 
-def fragment_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """One pixel of one primitive, as it meets the memory."""
+def pixel_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """One pixel of one triangle.
+
+    ``x``, ``y``              at the machine's resolution
+    ``x_steps``, ``y_steps``  columns and rows from the triangle's origin to it
+    ``none``                  no pixel at all: the triangle has no more
+    ``last``                  nothing of the triangle follows
+    """
     return data.StructLayout({
-        "unit": unsigned(configuration.id_bits),
-        "address": unsigned(configuration.address_bits),
-        "depth": unsigned(configuration.depth_bits),
-        "color": unsigned(3 * CHANNEL_BITS),
+        "x": unsigned(configuration.x_bits),
+        "y": unsigned(configuration.y_bits),
+        "x_steps": range(configuration.width),
+        "y_steps": range(configuration.height),
+        "none": 1,
+        "last": 1,
     })
 
 
 class FragmentStepper(wiring.Component):
-    """Spans in, their fragments out, left to right.
+    """Spans in, their pixels out, left to right.
 
-    The value at each pixel is floored, read as signed and saturated: depth to
-    the greatest a vertex may have, so that every fragment is nearer than the
-    background, channels to their eight bits.
-
-    Latency: two clocks (span register, fragment register).  Throughput: a
-    fragment a clock; the next span follows without a bubble.
+    Latency: ``latency`` clocks (span register, pixel register).  Throughput: a pixel
+    a clock; the next span follows without a bubble.
 
     Members
     -------
-    total: In(id_bits)
-    started: In(stream of started_span_layout)
-    fragments: Out(stream of fragment_layout)
+    spans: In(stream of span_layout)
+    pixels: Out(stream of pixel_layout)
     busy: Out(1)
-        Holds a span or a fragment.
+        Holds a span or a pixel.
 
-    Fuchs & Johnson, figure 13: rapid incremental computation of Z, and eventually of RGB.
+    Fuchs & Johnson, figure 13: the pixels of a row are a constant distance apart.
     """
 
     latency = 2
@@ -49,52 +49,34 @@ class FragmentStepper(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
-            "total": In(configuration.id_bits),
-            "started": In(stream.Signature(started_span_layout(configuration))),
-            "fragments": Out(stream.Signature(fragment_layout(configuration))),
+            "spans": In(stream.Signature(span_layout(configuration))),
+            "pixels": Out(stream.Signature(pixel_layout(configuration))),
             "busy": Out(1),
         })
 
     def elaborate(self, platform):
         m = Module()
-        configuration = self.configuration
-        span = Signal(started_span_layout(configuration))
+        span = Signal(span_layout(self.configuration))
         holding = Signal()
-        fragment = self.fragments.payload
-        m.submodules.pixel = pixel = PixelAddress(configuration=configuration)
-        m.d.comb += [pixel.total.eq(self.total), pixel.x.eq(span.x), pixel.y.eq(span.y)]
-
-        move = ~self.fragments.valid | self.fragments.ready
-        last = span.more == 0
+        pixel = self.pixels.payload
+        move = ~self.pixels.valid | self.pixels.ready
+        following = span.x + span.stride
+        ends = span.none | (following >= span.end)
         m.d.comb += [
-            self.started.ready.eq(~holding | (move & last)),
-            self.busy.eq(holding | self.fragments.valid),
+            self.spans.ready.eq(~holding | (move & ends)),
+            self.busy.eq(holding | self.pixels.valid),
         ]
         with m.If(move):
             m.d.sync += [
-                self.fragments.valid.eq(holding),
-                fragment.unit.eq(pixel.unit),
-                fragment.address.eq(pixel.address),
-                fragment.depth.eq(self._narrow(span.values.depth, configuration.depth_bits,
-                                               configuration.depth_background - 1)),
-                fragment.color.eq(Cat(self._channel(span.values[name])
-                                      for name in commands.CHANNELS)),
-                span.x.eq(span.x + (1 << span.x_stride_bits)),
-                span.more.eq(span.more - 1),
-                holding.eq(holding & ~last),
+                self.pixels.valid.eq(holding),
+                pixel.x.eq(span.x),
+                pixel.y.eq(span.y),
+                pixel.x_steps.eq(span.x - span.left),
+                pixel.y_steps.eq(span.y_steps),
+                pixel.none.eq(span.none),
+                pixel.last.eq(span.last & ends),
+                span.x.eq(following),
             ]
-            for name in span.values.shape().members:
-                m.d.sync += span.values[name].eq(span.values[name] + span.steps[name])
-        with m.If(self.started.valid & self.started.ready):
-            m.d.sync += [span.eq(self.started.payload), holding.eq(1)]
+        with m.If(self.spans.ready):
+            m.d.sync += [span.eq(self.spans.payload), holding.eq(self.spans.valid)]
         return m
-
-    def _narrow(self, carried, value_bits, high):
-        fraction_bits = self.configuration.fraction_bits
-        whole = floor_shift(to_signed(carried, len(carried)), fraction_bits)
-        return saturate(whole, 0, high)[:value_bits]
-
-    def _channel(self, carried):
-        if self.configuration.shading == "flat":
-            return carried
-        return self._narrow(carried, CHANNEL_BITS, (1 << CHANNEL_BITS) - 1)

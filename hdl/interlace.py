@@ -40,8 +40,8 @@ class PixelAddress(wiring.Component):
         Number of the unit that holds it.
     address: Out(address_bits)
         Its word there.  Both are 0 while ``total`` is no supported number.
-    words: Out(range(words + 1))
-        Words of each unit that hold the picture.
+    last_word: Out(address_bits)
+        The last of the words of each unit that hold the picture.
     width: Out(x_bits)
         Columns of the picture.
     """
@@ -54,13 +54,15 @@ class PixelAddress(wiring.Component):
             "y": In(configuration.y_bits),
             "unit": Out(configuration.id_bits),
             "address": Out(configuration.address_bits),
-            "words": Out(range(configuration.words + 1)),
+            "last_word": Out(configuration.address_bits),
             "width": Out(configuration.x_bits),
         })
 
     def elaborate(self, platform):
         m = Module()
         interlaces = self.configuration.interlaces()
+        # Rows of so many words lie side by side without arithmetic.
+        aligned = all(interlace.pitch.bit_count() == 1 for interlace in interlaces)
         row = Signal.like(self.y)
         column = Signal.like(self.x)
         pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))
@@ -72,10 +74,14 @@ class PixelAddress(wiring.Component):
                         row.eq(_without(self.y, interlace.unit_mask("y"))),
                         column.eq(_without(self.x, interlace.unit_mask("x"))),
                         pitch.eq(interlace.pitch),
-                        self.words.eq(interlace.words),
+                        self.last_word.eq(interlace.words - 1),
                         self.width.eq(interlace.width),
                     ]
-        m.d.comb += self.address.eq(row * pitch + column)
+                    if aligned:
+                        m.d.comb += self.address.eq(
+                            Cat(column[:interlace.pitch.bit_length() - 1], row))
+        if not aligned:
+            m.d.comb += self.address.eq(row * pitch + column)
         return m
 
 

@@ -9,11 +9,11 @@ from ..golden.configuration import MachineConfiguration
 __all__ = [
     "Operation",
     "broadcast_layout",
-    "operation_layout",
     "outline_layout",
     "planes_layout",
     "prepared_triangle_layout",
     "response_layout",
+    "row_shape",
     "span_layout",
     "struct_layout",
     "walked_outline_layout",
@@ -48,23 +48,28 @@ def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
     return data.StructLayout({name: shape for name, shape in layout.items() if name != "planes"})
 
 
+def row_shape(configuration: MachineConfiguration) -> Shape:
+    """A row, or one that a processing element would own next, past the picture's end."""
+    beyond = (configuration.maximum_units + 1) << configuration.square_bits
+    return Shape.cast(range(configuration.height + beyond))
+
+
 def walked_outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """An outline, and above it the first row of a processing element's lattice."""
+    """An outline, and above it what of the processing element's lattice is known early.
+
+    ``first_row``   the first owned row, where the domain is one lattice
+    ``second_row``  the one after it
+    ``one_row``     that is past the triangle's end
+    """
     return data.StructLayout({**outline_layout(configuration).members,
-                              "first_row": unsigned(configuration.y_bits)})
+                              "first_row": row_shape(configuration),
+                              "second_row": row_shape(configuration),
+                              "one_row": 1})
 
 
 def planes_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """The interpolants of a prepared triangle."""
     return struct_layout(commands.planes_layout(configuration))
-
-
-def operation_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """A broadcast word as it waits in a processing element, interpolants elsewhere."""
-    return data.StructLayout({
-        "operation": Operation,
-        "triangle": walked_outline_layout(configuration),
-    })
 
 
 def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
@@ -86,20 +91,20 @@ def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """A run of pixels of one row of a triangle: where it starts and how many pixels it has.
 
     ``x``, ``y``        first pixel, at the machine's resolution
-    ``x_steps``         pixel columns from the triangle's origin to it
-    ``y_steps``         pixel rows from the triangle's origin to it
-    ``more``            pixels after the first
-    ``x_stride_bits``   log2 of the distance between neighbouring pixels of the run
+    ``end``             column that its last pixel lies before
+    ``left``            the triangle's first column, from which interpolants count
+    ``y_steps``         rows from the triangle's first one, likewise
+    ``stride``          distance between neighbouring pixels of the run
     ``none``            no pixel at all
     ``last``            nothing of the triangle follows
     """
     return data.StructLayout({
         "x": unsigned(configuration.x_bits),
         "y": unsigned(configuration.y_bits),
-        "x_steps": unsigned(configuration.x_bits),
+        "end": unsigned(configuration.x_bits),
+        "left": unsigned(configuration.x_bits),
         "y_steps": unsigned(configuration.y_bits),
-        "more": unsigned(configuration.x_bits),
-        "x_stride_bits": range(configuration.maximum_units.bit_length()),
+        "stride": range(configuration.maximum_units + 1),
         "none": 1,
         "last": 1,
     })

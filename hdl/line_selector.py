@@ -11,43 +11,47 @@ __all__ = ["LineSelector"]
 
 
 class LineSelector(wiring.Component):
-    """The source whose ``select`` bit is high drives the lines; the last one, when none is.
+    """The depth test has the lines, but while a service needs them.  Combinational.
 
-    Combinational.  Answers go to every source; only the one selected asked.
+    Answers go to all three; only the one that has the lines asked.
 
     Members
     -------
-    select: In(sources - 1)
-        At most one bit high.
-    sources: In(ProcessingElementLines) [sources]
+    surveying, reading: In(1)
+        The lines are that service's; at most one of the two, and the depth test is idle.
+    survey, read_back, depth_test: In(ProcessingElementLines)
+        The survey writes depths alone, and at address 0, to which the idle depth test keeps
+        that line: the colour is whatever is on the others.  The read-back does not write.
     lines: Out(ProcessingElementLines)
-
-    Raises ``ValueError`` for fewer than two sources.
 
     Inside the processing element of figure 12.
     """
 
-    def __init__(self, *, configuration: MachineConfiguration, sources: int):
-        if sources < 2:
-            raise ValueError(f"sources must be at least 2, not {sources!r}")
+    def __init__(self, *, configuration: MachineConfiguration):
         lines = ProcessingElementLines(configuration)
         super().__init__({
-            "select": In(sources - 1),
-            "sources": In(lines).array(sources),
+            "surveying": In(1),
+            "reading": In(1),
+            "survey": In(lines),
+            "read_back": In(lines),
+            "depth_test": In(lines),
             "lines": Out(lines),
         })
 
     def elaborate(self, platform):
         m = Module()
-        for source in self.sources:
+        lines = self.lines
+        for source in (self.survey, self.read_back, self.depth_test):
             m.d.comb += [
-                source.read_busy.eq(self.lines.read_busy),
-                source.read_data.eq(self.lines.read_data),
-                source.write_busy.eq(self.lines.write_busy),
+                source.read_busy.eq(lines.read_busy),
+                source.read_data.eq(lines.read_data),
+                source.write_busy.eq(lines.write_busy),
             ]
-        *selected, default = self.sources
-        m.d.comb += [self.lines.read.eq(default.read), self.lines.write.eq(default.write)]
-        for source, select in zip(selected, self.select, strict=True):
-            with m.If(select):
-                m.d.comb += [self.lines.read.eq(source.read), self.lines.write.eq(source.write)]
+        m.d.comb += [lines.read.eq(self.depth_test.read), lines.write.eq(self.depth_test.write)]
+        with m.If(self.surveying):
+            m.d.comb += [lines.read.eq(self.survey.read)]
+            m.d.comb += [lines.write[name].eq(self.survey.write[name])
+                         for name in ("valid", "unit", "depth")]
+        with m.Elif(self.reading):
+            m.d.comb += lines.read.eq(self.read_back.read)
         return m

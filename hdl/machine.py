@@ -129,12 +129,14 @@ class Machine(wiring.Component):
         for unit in units:
             pictures.d.comb += [
                 getattr(unit.pictures, name).eq(getattr(controller.pictures, name))
-                for name in ("front", "depth_tag", "background", "initialise", "sweep")]
+                for name in ("front", "depth_tag", "initialise", "sweep")]
             pictures.d.comb += [tag.eq(source) for tag, source in zip(
                 unit.pictures.color_tag, controller.pictures.color_tag, strict=True)]
         scan.d.comb += [
             controller.scan_start.eq(generator.start),
+            generator.background.eq(controller.background),
             generator.scan.video.eq(reduce(or_, (unit.scan.video for unit in units), C(0))),
+            generator.scan.drawn.eq(reduce(or_, (unit.scan.drawn for unit in units), C(0))),
         ]
         for unit in units:
             scan.d.comb += [unit.scan.fetch.eq(generator.scan.fetch),

@@ -19,9 +19,9 @@ class MemoryAccess(wiring.Signature):
 
     A word has three lanes (figure 6): depth, and two colours.  Each access takes
     place in the clock in which it is asked for and its busy line is low; what it
-    reads is there in the next clock, and in that one only.  A read that meets a
-    write of the same word sees what is written; what a scan reads of the very
-    colour that is written is unknown.  So are all contents after power-on.
+    reads is there in the next clock, and in that one only.  What a read sees of a
+    write of the same word in the same clock is unknown, and so is what a scan reads
+    of the very colour that is written.  So are all contents after power-on.
 
     Members
     -------

@@ -27,8 +27,8 @@ class MemoryUnit(wiring.Component):
     has the port in the meantime.
 
     Each lane of a word has a tag beside it.  One that is not the lane's current
-    tag reads as background: depth 2^d - 1, or the background colour of the picture
-    shown.  A new frame is a new tag, and no word need be cleared; clocks in which
+    tag reads as background: depth 2^d - 1, and the video bus is told that nothing has
+    been drawn there.  A new frame is a new tag, and no word need be cleared; clocks in which
     nobody asks for anything are used to take old tags out (``TagSweep``).
 
     Latency: a scan fetch is on the video bus three clocks later; read data come
@@ -81,13 +81,17 @@ class MemoryUnit(wiring.Component):
         access, pictures = self.memory.access, self.pictures
         captured = Signal()
         output = Signal.like(self.scan.video)
+        drawn = Signal()
         scan = wires(m, "scan_wires")
         for address, line in ((fetch, self.scan.fetch), (show, self.scan.show)):
             scan.d.comb += [
                 address.total.eq(self.total), address.id.eq(number),
                 address.x.eq(line.x), address.y.eq(line.y),
             ]
-        scan.d.comb += self.scan.video.eq(Mux(show.selected, output, 0))
+        scan.d.comb += [
+            self.scan.drawn.eq(show.selected & drawn),
+            self.scan.video.eq(Mux(self.scan.drawn, output, 0)),
+        ]
         scan_read = Signal()
         scan_address = Signal(self.configuration.address_bits)
         m.d.sync += [
@@ -103,7 +107,7 @@ class MemoryUnit(wiring.Component):
                 color.eq(Mux(pictures.front, access.color[1], access.color[0])),
                 tag.eq(Mux(pictures.front, pictures.color_tag[1], pictures.color_tag[0])),
             ]
-            m.d.sync += output.eq(Mux(color.tag == tag, color.value, pictures.background))
+            m.d.sync += [output.eq(color.value), drawn.eq(color.tag == tag)]
 
     def _serve(self, m, number):
         """What the processing element asks for, and its answer."""

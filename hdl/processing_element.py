@@ -12,14 +12,15 @@ from .broadcast_queue import BroadcastQueue
 from .depth_test import DepthTest
 from .fragment_stepper import FragmentStepper
 from .interlace import PixelAddress
+from .interpolator import Interpolator
 from .layouts import span_layout
 from .line_selector import LineSelector
 from .processing_element_control import ProcessingElementControl
 from .read_back import ReadBack
 from .response_link import ResponseLink
-from .span_start import SpanStart
 from .span_walker import SpanWalker
 from .survey import Survey
+from .two_port_depth_test import TwoPortDepthTest
 from .wires import wires
 
 __all__ = ["ProcessingElement"]
@@ -28,7 +29,7 @@ COUNTER_BITS = 32
 
 #: Spans found ahead, so that rows of few pixels hide behind longer ones.
 SPANS_WAITING = 16
-SPANS_LATENCY = 2
+SPANS_LATENCY = 1
 
 
 class ProcessingElement(wiring.Component):
@@ -36,9 +37,9 @@ class ProcessingElement(wiring.Component):
 
     ::
 
-        broadcast ─▶ queue ─▶ control ─▶ SpanWalker ─▶ FIFO ─▶ SpanStart ─▶ FragmentStepper
+        broadcast ─▶ queue ─▶ control ─▶ SpanWalker ─▶ FIFO ─▶ FragmentStepper ─▶ Interpolator
                                 │                                                   │
-                                │                                               DepthTest
+                                │                                               depth test
                                 ├─▶ Survey, ReadBack ──────────────────────────────▶┤
                                 ▼                                                   ▼
                           response link ◀── from the right            lines to the right
@@ -62,12 +63,13 @@ class ProcessingElement(wiring.Component):
         What it does in this clock; only where the configuration says ``observe``.
     """
 
-    latency = (BroadcastQueue.latency + SpanWalker.latency + SPANS_LATENCY + SpanStart.latency
-               + FragmentStepper.latency)
+    latency = (BroadcastQueue.latency + SpanWalker.latency + SPANS_LATENCY + FragmentStepper.latency
+               + Interpolator.latency)
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.depth_test = DepthTest(configuration=configuration)
+        kind = {1: DepthTest, 2: TwoPortDepthTest}[configuration.memory_ports]
+        self.depth_test = kind(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
@@ -82,10 +84,10 @@ class ProcessingElement(wiring.Component):
         m.submodules.queue = queue = BroadcastQueue(configuration=configuration)
         m.submodules.control = control = ProcessingElementControl(configuration=configuration)
         m.submodules.walker = walker = SpanWalker(configuration=configuration)
-        m.submodules.spans = spans = fifo.SyncFIFOBuffered(
+        m.submodules.spans = spans = fifo.SyncFIFO(
             width=span_layout(configuration).size, depth=SPANS_WAITING)
-        m.submodules.start = start = SpanStart(configuration=configuration)
         m.submodules.stepper = stepper = FragmentStepper(configuration=configuration)
+        m.submodules.interpolator = interpolator = Interpolator(configuration=configuration)
         m.submodules.depth_test = depth_test = self.depth_test
         m.submodules.survey = survey = Survey(configuration=configuration)
         m.submodules.read_back = read_back = ReadBack(configuration=configuration)
@@ -102,36 +104,42 @@ class ProcessingElement(wiring.Component):
             queue.whole.eq(walker.whole),
         ]
         wiring.connect(operations, queue.operations, control.operations)
-        wiring.connect(operations, control.triangles, walker.triangles)
 
         # The drawing pipeline.
-        drawing = wires(m, "drawing_wires")
-        drawing.d.comb += [
-            spans.w_en.eq(walker.spans.valid),
+        pipeline = wires(m, "drawing_wires")
+        # Said a clock ahead, with a place for the span of this clock: what waits for it reaches far.
+        room = Signal()
+        m.d.sync += room.eq(spans.level < SPANS_WAITING - 1)
+        pipeline.d.comb += [
+            spans.w_en.eq(walker.spans.valid & room),
             spans.w_data.eq(walker.spans.payload),
-            walker.spans.ready.eq(spans.w_rdy),
-            start.spans.valid.eq(spans.r_rdy),
-            start.spans.payload.eq(spans.r_data),
-            spans.r_en.eq(start.spans.ready),
-            control.drawing.eq(walker.busy | (spans.level != 0) | start.busy | stepper.busy
-                               | depth_test.busy),
+            walker.spans.ready.eq(room),
+            stepper.spans.valid.eq(spans.r_rdy),
+            stepper.spans.payload.eq(spans.r_data),
+            spans.r_en.eq(stepper.spans.ready),
         ]
-        wiring.connect(drawing, queue.planes, start.planes)
-        wiring.connect(drawing, start.started, stepper.started)
-        wiring.connect(drawing, stepper.fragments, depth_test.fragments)
+        # A clock late, and from the first clock on in which a triangle comes.
+        drawing = Signal()
+        m.d.sync += drawing.eq(queue.triangles.valid | walker.busy | (spans.level != 0)
+                               | stepper.busy | interpolator.busy | depth_test.busy)
+        m.d.comb += control.drawing.eq(drawing)
+        wiring.connect(pipeline, queue.triangles, walker.triangles)
+        wiring.connect(pipeline, queue.planes, interpolator.planes)
+        wiring.connect(pipeline, stepper.pixels, interpolator.pixels)
+        wiring.connect(pipeline, interpolator.fragments, depth_test.fragments)
 
         # The domain: first unit from the lines, upper end from the survey.
         first, end = self.left.id, survey.end
         domain = wires(m, "domain_wires")
         domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total),
                           walker.width.eq(picture.width)]
-        for part in (walker, stepper, survey):
+        for part in (walker, interpolator, survey):
             domain.d.comb += part.total.eq(self.total)
         for part in (walker, survey, read_back, control):
             domain.d.comb += part.first.eq(first)
         for part in (walker, read_back, control):
             domain.d.comb += part.end.eq(end)
-        domain.d.comb += read_back.words.eq(picture.words)
+        domain.d.comb += read_back.last_word.eq(picture.last_word)
 
         # The services, and who has the memory lines.
         service = wires(m, "service_wires")
@@ -141,13 +149,13 @@ class ProcessingElement(wiring.Component):
                 getattr(control, f"{name}_done").eq(part.done),
             ]
         wiring.connect(service, read_back.depths, control.depths)
-        users = (survey, read_back, depth_test)
-        m.submodules.selector = selector = LineSelector(configuration=configuration,
-                                                        sources=len(users))
-        service.d.comb += selector.select.eq(Cat(control.surveying, control.reading))
+        m.submodules.selector = selector = LineSelector(configuration=configuration)
+        service.d.comb += [selector.surveying.eq(control.surveying),
+                           selector.reading.eq(control.reading)]
         lines = wires(m, "line_wires")
-        for user, source in zip(users, selector.sources, strict=True):
-            wiring.connect(lines, user.memory, source)
+        for name, part in (("survey", survey), ("read_back", read_back),
+                           ("depth_test", depth_test)):
+            wiring.connect(lines, part.memory, getattr(selector, name))
         wiring.connect(lines, selector.lines, wiring.flipped(self.right.lines))
         self._count(m, control, depth_test)
         if configuration.observe:
@@ -171,7 +179,7 @@ class ProcessingElement(wiring.Component):
         taken = depth_test.fragments.valid & depth_test.fragments.ready
         m.d.sync += [
             fragments.eq(fragments + taken),
-            busy_cycles.eq(busy_cycles + control.working),
+            busy_cycles.eq(busy_cycles + control.drawing),
         ]
         with m.If(control.frame_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]
@@ -180,7 +188,7 @@ class ProcessingElement(wiring.Component):
     def _observe(self, m, control, walker, depth_test):
         """Listens to the walker and the depth test, some clocks further on."""
         m.submodules.observer = observer = ElementActivity(
-            delay=SPANS_LATENCY + SpanStart.latency + FragmentStepper.latency)
+            delay=SPANS_LATENCY + FragmentStepper.latency + Interpolator.latency)
         fragments, lines = depth_test.fragments, self.right.lines
         m.d.comb += [
             observer.offered.eq(fragments.valid),
@@ -190,6 +198,6 @@ class ProcessingElement(wiring.Component):
             observer.preparing.eq(walker.preparing),
             observer.empty_row.eq(walker.empty_row),
             observer.walking.eq(walker.busy),
-            observer.service.eq(~control.idle & ~control.triangles.valid & ~control.drawing),
+            observer.service.eq(~control.idle & ~control.drawing),
             self.activity.eq(observer.activity),
         ]

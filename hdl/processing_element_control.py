@@ -6,24 +6,23 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.commands import ResponseKind
 from ..golden.configuration import MachineConfiguration
-from .layouts import Operation, operation_layout, response_layout, walked_outline_layout
+from .layouts import Operation, response_layout
 
 __all__ = ["ProcessingElementControl"]
 
 
 class ProcessingElementControl(wiring.Component):
-    """Takes operations in order: triangles flow on to the datapath, one behind the other;
-    anything else waits until the datapath is empty.  Control only: it moves no pixel.
+    """Takes the operations that are no triangles, each when the datapath is empty.
+    Control only: it moves no pixel, and triangles do not pass through it.
 
-    Latency: a triangle passes in the same clock; another operation starts one
-    clock after the datapath is empty.
+    Latency: an operation starts in the clock in which it comes, or the datapath is empty.
 
     Members
     -------
-    operations: In(stream of operation_layout)
-    triangles: Out(stream of walked_outline_layout)
+    operations: In(stream of Operation)
+        After the triangles before it have been taken; none follow until it is taken.
     drawing: In(1)
-        The datapath behind ``triangles`` holds something.
+        The datapath holds something.
     survey_start, read_back_start: Out(1)
     survey_done, read_back_done: In(1)
         The two services.
@@ -38,9 +37,7 @@ class ProcessingElementControl(wiring.Component):
         The counts to report.
     responses: Out(stream of response_layout)
     idle: Out(1)
-        No operation here or in the datapath.
-    working: Out(1)
-        Drawing: what counts as a busy cycle.
+        No operation here, and the datapath is empty.
 
     Fuchs & Johnson, the steps after figure 12.
     """
@@ -48,8 +45,7 @@ class ProcessingElementControl(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
-            "operations": In(stream.Signature(operation_layout(configuration))),
-            "triangles": Out(stream.Signature(walked_outline_layout(configuration))),
+            "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "drawing": In(1),
             **{f"{service}_{when}": flow(1) for service in ("survey", "read_back")
                for when, flow in (("start", Out), ("done", In))},
@@ -63,41 +59,16 @@ class ProcessingElementControl(wiring.Component):
             "busy_cycles": In(32),
             "responses": Out(stream.Signature(response_layout())),
             "idle": Out(1),
-            "working": Out(1),
         })
 
     def elaborate(self, platform):
         m = Module()
         operations, response = self.operations, self.responses.payload
-        operation = operations.payload.operation
-        is_draw = operation == Operation.DRAW
-        m.d.comb += self.triangles.payload.eq(operations.payload.triangle)
 
-        def report(kind, value, then):
-            m.d.comb += [
-                self.responses.valid.eq(1),
-                response.kind.eq(kind),
-                response.value.eq(value),
-            ]
-            with m.If(self.responses.ready):
-                then()
-
-        def finish():
-            m.d.comb += operations.ready.eq(1)
-            m.next = "DRAW"
-
-        def go(state):
-            m.next = state
-
-        with m.FSM():
+        with m.FSM() as state:
             with m.State("DRAW"):
-                m.d.comb += [
-                    self.triangles.valid.eq(operations.valid & is_draw),
-                    operations.ready.eq(self.triangles.ready & is_draw),
-                    self.idle.eq(~operations.valid & ~self.drawing),
-                    self.working.eq(self.triangles.valid | self.drawing),
-                ]
-                with m.If(operations.valid & ~is_draw & ~self.drawing), m.Switch(operation):
+                m.d.comb += self.idle.eq(~operations.valid & ~self.drawing)
+                with m.If(operations.valid & ~self.drawing), m.Switch(operations.payload):
                     with m.Case(Operation.SURVEY):
                         m.d.comb += self.survey_start.eq(1)
                         m.next = "SURVEY"
@@ -114,22 +85,34 @@ class ProcessingElementControl(wiring.Component):
                 m.d.comb += self.surveying.eq(1)
                 with m.If(self.survey_done):
                     m.next = "REPORT_DOMAIN"
-            with m.State("REPORT_DOMAIN"):
-                units = Signal(16)
-                m.d.comb += units.eq(self.end - self.first)
-                report(ResponseKind.DOMAIN, Cat(units, self.first), finish)
             with m.State("READ_BACK"):
                 m.d.comb += [
                     self.reading.eq(1),
                     self.responses.valid.eq(self.depths.valid),
-                    response.kind.eq(ResponseKind.DEPTH),
-                    response.value.eq(self.depths.payload),
                     self.depths.ready.eq(self.responses.ready),
                 ]
                 with m.If(self.read_back_done):
-                    finish()
-            with m.State("REPORT_FRAGMENTS"):
-                report(ResponseKind.FRAGMENTS, self.fragments, lambda: go("REPORT_BUSY"))
-            with m.State("REPORT_BUSY"):
-                report(ResponseKind.BUSY, self.busy_cycles, finish)
+                    m.d.comb += operations.ready.eq(1)
+                    m.next = "DRAW"
+            for kind, following in (("DOMAIN", "DRAW"), ("FRAGMENTS", "REPORT_BUSY"),
+                                    ("BUSY", "DRAW")):
+                with m.State(f"REPORT_{kind}"):
+                    m.d.comb += self.responses.valid.eq(1)
+                    with m.If(self.responses.ready):
+                        m.d.comb += operations.ready.eq(following == "DRAW")
+                        m.next = following
+
+        # Whatever the state, it says what it would say: a choice by two bits and no gate more.
+        units = Signal(16)
+        m.d.comb += units.eq(self.end - self.first)
+        chosen = Cat(state.ongoing("READ_BACK") | state.ongoing("REPORT_BUSY"),
+                     state.ongoing("REPORT_FRAGMENTS") | state.ongoing("REPORT_BUSY"))
+        with m.Switch(chosen):
+            for number, (kind, value) in enumerate((
+                    (ResponseKind.DOMAIN, Cat(units, self.first)),
+                    (ResponseKind.DEPTH, self.depths.payload),
+                    (ResponseKind.FRAGMENTS, self.fragments),
+                    (ResponseKind.BUSY, self.busy_cycles))):
+                with m.Case(number):
+                    m.d.comb += [response.kind.eq(kind), response.value.eq(value)]
         return m

@@ -13,15 +13,15 @@ __all__ = ["ReadBack"]
 class ReadBack(wiring.Component):
     """Reads every word of every unit of the domain: units in order, addresses ascending.
 
-    Latency: a word is offered in the clock after its read.  Throughput: a word
-    a clock while it is taken and the unit has its port.
+    Latency: a word is offered two clocks after its read.  Throughput: a word every
+    two clocks while it is taken and the unit has its port.
 
     Members
     -------
     first, end: In(id_bits)
         The domain, ``end`` excluded.
-    words: In
-        How many words of each unit hold the picture.
+    last_word: In(address_bits)
+        The last of the words of each unit that hold the picture.
     start: In(1)
         Begin; the inputs hold until ``done``.
     done: Out(1)
@@ -32,14 +32,14 @@ class ReadBack(wiring.Component):
     Not in the paper; the lines are those of figure 12.
     """
 
-    latency = 1
+    latency = 2
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
             "first": In(configuration.id_bits),
             "end": In(configuration.id_bits),
-            "words": In(range(configuration.words + 1)),
+            "last_word": In(configuration.address_bits),
             "start": In(1),
             "done": Out(1),
             "depths": Out(stream.Signature(configuration.depth_bits)),
@@ -51,33 +51,36 @@ class ReadBack(wiring.Component):
         memory, depths = self.memory, self.depths
         unit = Signal.like(self.first)
         address = Signal(self.configuration.address_bits)
-        fresh = Signal()  # the answer is on the lines in this clock only
-        held = Signal.like(memory.read_data)
-        free = ~depths.valid | depths.ready
+        last, again = Signal(), Signal()  # this address is the last one; the next is the first
+        answering = Signal()  # the answer is on the lines in this clock only
+        free = ~answering & (~depths.valid | depths.ready)
         m.d.comb += [
             memory.read.unit.eq(unit),
             memory.read.address.eq(address),
-            depths.payload.eq(Mux(fresh, memory.read_data, held)),
+            last.eq(address == self.last_word),
         ]
         read = memory.read.valid & ~memory.read_busy
-        m.d.sync += fresh.eq(read)
-        with m.If(fresh):
-            m.d.sync += held.eq(memory.read_data)
-        with m.If(free):
-            m.d.sync += depths.valid.eq(read)
+        m.d.sync += answering.eq(read)
+        with m.If(answering):
+            m.d.sync += [depths.payload.eq(memory.read_data), depths.valid.eq(1)]
+        with m.Elif(depths.ready):
+            m.d.sync += depths.valid.eq(0)
 
         with m.FSM():
-            with m.State("IDLE"), m.If(self.start):
-                m.d.sync += [unit.eq(self.first), address.eq(0)]
-                m.next = "READ"
+            with m.State("IDLE"):
+                m.d.comb += again.eq(1)
+                m.d.sync += unit.eq(self.first)
+                with m.If(self.start):
+                    m.next = "READ"
             with m.State("READ"):
                 with m.If(unit != self.end):
                     m.d.comb += memory.read.valid.eq(free)
                     with m.If(read):
-                        m.d.sync += address.eq(address + 1)
-                        with m.If(address + 1 >= self.words):
-                            m.d.sync += [address.eq(0), unit.eq(unit + 1)]
+                        m.d.comb += again.eq(last)
+                        m.d.sync += [address.eq(address + 1), unit.eq(unit + last)]
                 with m.Elif(free):
                     m.d.comb += self.done.eq(1)
                     m.next = "IDLE"
+        with m.If(again):
+            m.d.sync += address.eq(0)
         return m

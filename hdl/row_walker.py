@@ -8,7 +8,7 @@ from ..golden import commands
 from ..golden.configuration import MachineConfiguration
 from .interlace import LatticeBlock
 from .lattice import first_owned, lattice_layout, next_owned
-from .layouts import struct_layout, walked_outline_layout
+from .layouts import row_shape, struct_layout, walked_outline_layout
 
 __all__ = ["RowWalker", "row_layout"]
 
@@ -45,7 +45,8 @@ class RowWalker(wiring.Component):
 
     The domain is walked as aligned blocks of units, whose pixels form a regular
     lattice (one block, where the shares are equal powers of two); of each block
-    only rows that it owns are visited.
+    only rows that it owns are visited.  What goes from block to block is built only
+    where there may be several (``MachineConfiguration.aligned_domains``).
 
     Latency: two clocks.  Throughput: a row a clock, the next triangle without a
     bubble.  In a domain of several blocks each costs three clocks more, and one
@@ -110,7 +111,6 @@ class RowWalker(wiring.Component):
             settled.eq(1),
             lattice.eq(block.lattice),
             after.eq(block.after),
-            last_block.eq(block.after == self.end),
             nobody.eq(self.first == self.end),
         ]
 
@@ -120,10 +120,8 @@ class RowWalker(wiring.Component):
         holding, ended, outside = (Signal(name=name) for name in ("holding", "ended", "outside"))
         finding = Signal()  # another block: its first row is not known
         priming = Signal()  # that row is known, the one after it is not
-        beyond = (configuration.maximum_units + 1) << square_bits
-        y, following, base, after_base = (
-            Signal(range(configuration.height + beyond), name=name)
-            for name in ("y", "following", "base", "after_base"))
+        y, following, base, after_base = (Signal(row_shape(configuration), name=name)
+                                          for name in ("y", "following", "base", "after_base"))
         load, walking, finishes = (Signal(name=name) for name in ("load", "walking", "finishes"))
         move = ~self.rows.valid | self.rows.ready
         m.d.comb += [
@@ -131,17 +129,9 @@ class RowWalker(wiring.Component):
             finishes.eq(nobody | (ended & last_block)),
             load.eq(settled & ~further & (~holding | (move & walking & finishes))),
             self.triangles.ready.eq(load),
-            base.eq(Mux(load, coming.first_row, Mux(priming, y, following))),
+            base.eq(Mux(priming, y, following)),
             after_base.eq(next_owned(base, lattice.y_mask, square_bits)),
         ]
-        with m.If(finding & settled):
-            m.d.sync += [
-                y.eq(first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)),
-                finding.eq(0),
-                priming.eq(1),
-            ]
-        with m.If(priming):
-            m.d.sync += [priming.eq(0), outside.eq(y >= triangle.bottom)]
         with m.If(move):
             m.d.sync += self.rows.valid.eq(walking & (finishes | ~outside))
             self._row(m, triangle, y, row)
@@ -153,18 +143,37 @@ class RowWalker(wiring.Component):
             with m.If(walking):
                 m.d.sync += y.eq(following)
                 with m.If(finishes):
-                    m.d.sync += [holding.eq(0), further.eq(0), settled.eq(~further)]
+                    m.d.sync += holding.eq(0)
+        with m.If(priming | (move & walking)):
+            m.d.sync += [following.eq(after_base), ended.eq(after_base >= triangle.bottom)]
+        with m.If(load & self.triangles.valid):
+            m.d.sync += [
+                holding.eq(1),
+                triangle.eq(coming),
+                y.eq(coming.first_row),
+                following.eq(coming.second_row),
+                ended.eq(coming.one_row),
+            ]
+        if configuration.aligned_domains:
+            m.d.comb += last_block.eq(1)
+        else:
+            m.d.sync += last_block.eq(block.after == self.end)
+            with m.If(finding & settled):
+                m.d.sync += [
+                    y.eq(first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)),
+                    finding.eq(0),
+                    priming.eq(1),
+                ]
+            with m.If(priming):
+                m.d.sync += [priming.eq(0), outside.eq(y >= triangle.bottom)]
+            with m.If(move & walking):
+                with m.If(finishes):
+                    m.d.sync += [further.eq(0), settled.eq(~further)]
                 with m.Elif(ended):
                     m.d.sync += [finding.eq(1), further.eq(1), settled.eq(0), block_first.eq(after)]
-        with m.If(load | priming | (move & walking)):
-            m.d.sync += [
-                following.eq(after_base),
-                ended.eq(after_base >= Mux(load, coming.bottom, triangle.bottom)),
-            ]
-        with m.If(load & self.triangles.valid):
-            # Where there are several blocks, the first row was that of any of them.
-            m.d.sync += [holding.eq(1), triangle.eq(coming), y.eq(coming.first_row), outside.eq(0),
-                         finding.eq(~last_block & ~nobody)]
+            with m.If(load & self.triangles.valid):
+                # The first row that came was that of any of the blocks.
+                m.d.sync += [outside.eq(0), finding.eq(~last_block & ~nobody)]
         m.d.comb += [
             self.busy.eq(holding | self.rows.valid),
             self.preparing.eq(finding | priming | ~settled),

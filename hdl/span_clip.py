@@ -61,12 +61,10 @@ class SpanClip(wiring.Component):
                 m.d.comb += following.eq(square_end + (lattice.x_mask << square_bits))
                 with m.If(square_end < extent.beyond):
                     m.d.comb += end.eq(square_end)
-            more = end - 1 - x
-            stride_bits = 0
+            stride = 1
         else:
             m.d.comb += following.eq(end)
-            more = (end - 1 - x) >> lattice.x_stride_bits
-            stride_bits = lattice.x_stride_bits
+            stride = lattice.x_mask + 1
 
         move, empty, ended = (Signal(name=name) for name in ("move", "empty", "ended"))
         m.d.comb += [
@@ -82,10 +80,10 @@ class SpanClip(wiring.Component):
                 self.spans.valid.eq(self.extents.valid & (~empty | extent.last)),
                 span.x.eq(x),
                 span.y.eq(extent.y),
-                span.x_steps.eq(x - extent.left),
+                span.end.eq(end),
+                span.left.eq(extent.left),
                 span.y_steps.eq(extent.rows),
-                span.more.eq(more),
-                span.x_stride_bits.eq(stride_bits),
+                span.stride.eq(stride),
                 span.none.eq(empty),
                 span.last.eq(extent.last & ended),
             ]

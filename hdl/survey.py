@@ -17,8 +17,8 @@ class Survey(wiring.Component):
     ways; where none answers, the lines read 0.  The units found are those up to
     the first that does not answer.
 
-    Latency, from ``start``: six clocks a unit, plus the waits for scan slots;
-    then three at the unit that does not answer, or one when all have.
+    Latency, from ``start``: eight clocks a unit, plus the waits for scan slots;
+    then four at the unit that does not answer, or one when all have.
 
     Members
     -------
@@ -52,6 +52,7 @@ class Survey(wiring.Component):
         memory = self.memory
         second = Signal()  # the complement's turn
         pattern = Signal(depth_bits)
+        answered = Signal()
         m.d.comb += [
             # 1010…: neither this nor its complement is what silent lines read.
             pattern.eq(Const(0xAAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
@@ -76,7 +77,10 @@ class Survey(wiring.Component):
                 with m.If(~memory.read_busy):
                     m.next = "COMPARE"
             with m.State("COMPARE"):
-                with m.If(memory.read_data != pattern):
+                m.d.sync += answered.eq(memory.read_data == pattern)
+                m.next = "DECIDE"
+            with m.State("DECIDE"):
+                with m.If(~answered):
                     m.d.comb += self.done.eq(1)
                     m.next = "IDLE"
                 with m.Else():

@@ -66,12 +66,18 @@ class TagSweep(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        left = Signal(3)  # lanes still to erase
+        words = self.configuration.words
+        following = self.address + 1
+        # A power of two: the sum says it by itself.
+        last = following[-1] if words == 1 << len(self.address) else following == words
+        left = Signal(3)  # lanes to erase
+        taken = Signal(3)  # lanes that were written meanwhile
         everything = Signal()
+        m.d.sync += taken.eq(taken | self.overwritten)
 
         def step():
-            m.d.sync += [self.address.eq(self.address + 1), left.eq(0b111)]
-            with m.If(self.address == self.configuration.words - 1):
+            m.d.sync += [self.address.eq(following), left.eq(0b111), taken.eq(0)]
+            with m.If(last):
                 m.d.sync += self.address.eq(0)
                 m.next = "IDLE"
             with m.Elif(everything):
@@ -82,7 +88,7 @@ class TagSweep(wiring.Component):
         with m.FSM():
             with m.State("IDLE"):
                 m.d.comb += self.idle.eq(1)
-                m.d.sync += [everything.eq(self.initialise), left.eq(0b111)]
+                m.d.sync += [everything.eq(self.initialise), left.eq(0b111), taken.eq(0)]
                 with m.If(self.initialise):
                     m.next = "ERASE"
                 with m.Elif(self.start):
@@ -92,15 +98,11 @@ class TagSweep(wiring.Component):
                 with m.If(~self.busy):
                     m.next = "CHECK"
             with m.State("CHECK"):
-                found = self.stale & ~self.overwritten
-                m.d.sync += left.eq(found)
-                with m.If(found.any()):
-                    m.next = "ERASE"
-                with m.Else():
-                    step()
+                m.d.sync += left.eq(self.stale)
+                m.next = "ERASE"
             with m.State("ERASE"):
-                m.d.comb += self.erase.eq(left)
-                m.d.sync += left.eq(left & ~self.overwritten)
-                with m.If(~self.busy):
+                # What is written in this very clock takes the port.
+                m.d.comb += self.erase.eq(left & ~taken)
+                with m.If(~self.busy | (self.erase == 0)):
                     step()
         return m

@@ -18,9 +18,9 @@ class TwoPortMemory(wiring.Component):
 
     What a block RAM reads in the clock in which that word is written differs from
     one to the next, and may be neither the old word nor the new one.  It happens
-    for depths alone: there the word written is kept for a clock and answers in
-    place of the RAM.  The colour that is scanned is not the one that is drawn
-    into, and the sweep is alone.
+    for depths alone, and their reader knows what it writes (``TwoPortDepthTest``).
+    The colour that is scanned is not the one that is drawn into, and the sweep is
+    alone.
 
     Latency: one clock from a read to the data.  Throughput: a scan, a write and
     a read a clock.
@@ -73,14 +73,8 @@ class TwoPortMemory(wiring.Component):
             ]
             answers.append(read.data)
 
-        met = Signal()
-        written = Signal.like(access.depth_in)
-        m.d.sync += [
-            met.eq(access.read & access.write & (access.read_address == access.write_address)),
-            written.eq(access.depth_in),
-        ]
         m.d.comb += [
-            access.depth.eq(Mux(met, written, answers[0])),
+            access.depth.eq(answers[0]),
             access.color[0].eq(answers[1]),
             access.color[1].eq(answers[2]),
         ]

@@ -2,10 +2,11 @@
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
-from amaranth.lib.wiring import Out
+from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
 from .backplane import ScanLines
+from .delay import delayed
 
 __all__ = ["VideoPins", "VideoScanGenerator"]
 
@@ -50,6 +51,8 @@ class VideoScanGenerator(wiring.Component):
     Members
     -------
     scan: Out(ScanLines)
+    background: In(24)
+        Shown where nothing has been drawn: red in the low byte, then green, blue.
     start: Out(1)
         High for one clock when a scan begins, with its vertical sync; at least a line before
         its first fetch.
@@ -64,6 +67,7 @@ class VideoScanGenerator(wiring.Component):
         self.configuration = configuration
         super().__init__({
             "scan": Out(ScanLines(configuration)),
+            "background": In(3 * CHANNEL_BITS),
             "start": Out(1),
             "pins": Out(VideoPins()),
         })
@@ -102,21 +106,18 @@ class VideoScanGenerator(wiring.Component):
             scan.fetch.y.eq(line - top),
         ]
 
-        def delayed(signal, name):
+        def when_on_bus(signal, name):
             """The signal when its pixel is on the video bus."""
-            for stage in range(self.bus_latency):
-                later = Signal.like(signal, name=f"{name}_{stage + 1}")
-                m.d.sync += later.eq(signal)
-                signal = later
-            return signal
+            return delayed(m, signal, self.bus_latency, name, reset_less=False)
 
-        on_bus = delayed(active, "active")
-        m.d.comb += scan.show.eq(delayed(scan.fetch, "fetch"))
+        on_bus = when_on_bus(active, "active")
+        color = Mux(scan.drawn, scan.video, self.background)
+        m.d.comb += scan.show.eq(when_on_bus(scan.fetch, "fetch"))
         m.d.sync += [
-            pins.pixel.eq(delayed(pixel, "pixel")),
+            pins.pixel.eq(when_on_bus(pixel, "pixel")),
             pins.active.eq(on_bus),
-            pins.horizontal_sync.eq(delayed(horizontal_sync, "horizontal_sync")),
-            pins.vertical_sync.eq(delayed(vertical_sync, "vertical_sync")),
-            Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, scan.video, 0)),
+            pins.horizontal_sync.eq(when_on_bus(horizontal_sync, "horizontal_sync")),
+            pins.vertical_sync.eq(when_on_bus(vertical_sync, "vertical_sync")),
+            Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, color, 0)),
         ]
         return m
