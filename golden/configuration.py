@@ -61,7 +61,8 @@ class MachineConfiguration:
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
 
     ``coordinate_bits``      of a signed vertex coordinate
-    ``edge_column_bits``     of a signed column on an edge's own rows
+    ``edge_column_bits``     of a column on an edge's own rows; signed, where there are more than
+                             a column of the screen needs
     ``edge_remainder_bits``  of an edge's height, in sub-pixel units
     ``edge_fraction_bits``   of a carried edge: as many as make its column exact on every row
     ``depth_integer_bits``   of carried depth, its sign included where it has one
@@ -247,6 +248,11 @@ class MachineConfiguration:
         if self.block == 1:
             return 0
         return max(1, *(units for _, units in domains(self.cards))).bit_length() - 1
+
+    @property
+    def edges_on_screen(self) -> bool:
+        """No edge's column is off the screen, and none is signed."""
+        return self.edge_column_bits <= self.x_bits
 
     @property
     def edge_word_bits(self) -> int:

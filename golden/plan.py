@@ -13,6 +13,7 @@ from .errors import InputError
 from .fixed import MAX_FRACTION_BITS, exact_fraction_bits
 from .ranges import check_whole
 from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
+from .setup import fewest_edge_fraction_bits
 
 #: What a processing element holds in waiting where there is enough to hold.
 FIFO_DEPTH = MachineConfiguration.fifo_depth
@@ -79,6 +80,18 @@ def full_machine(*, max_error: int = 0, **fields: Any) -> MachineConfiguration:
     machine = MachineConfiguration(**fields | {"fraction_bits": 0})
     return replace(machine, fraction_bits=on_screen_fraction_bits(
         machine.width, machine.height, machine.sub_bits, max_error))
+
+
+def on_screen_machine(**fields: Any) -> MachineConfiguration:
+    """``full_machine`` with no bit more than for triangles that have all vertices on the screen.
+
+    They are drawn exactly; one of the guard band may be refused.
+    """
+    machine = full_machine(**fields)
+    height = machine.height << machine.sub_bits
+    return replace(machine, edge_column_bits=machine.x_bits,
+                   edge_remainder_bits=height.bit_length(),
+                   edge_fraction_bits=fewest_edge_fraction_bits(height, height * machine.height))
 
 
 def check_max_error(max_error: int) -> None:

@@ -20,7 +20,7 @@ from .display_list import DisplayList
 from .errors import InputError
 from .fixed import exact_fraction_bits
 from .grid import Grid
-from .setup import Edges, Outlines, outline
+from .setup import Edges, Outlines, fewest_edge_fraction_bits, outline
 
 Int64 = NDArray[np.int64]
 
@@ -34,6 +34,8 @@ class SceneNeeds:
                              but for ``coordinates``
     ``flat``                 each triangle has one colour
     ``sub_bits``             the list's own
+    ``width``                of the picture, at the machine's resolution
+    ``x_bits``               of a column at the highest resolution
     ``coordinates``          least and greatest vertex coordinate, in sub-pixel units
     ``columns``              least and greatest column on a row of an edge
     ``edge_height``          of the highest edge, in sub-pixel units
@@ -51,6 +53,8 @@ class SceneNeeds:
     drawn: int
     flat: bool
     sub_bits: int
+    width: int
+    x_bits: int
     coordinates: tuple[int, int]
     columns: tuple[int, int]
     edge_height: int
@@ -70,7 +74,11 @@ class SceneNeeds:
 
     @property
     def edge_column_bits(self) -> int:
-        return _signed_bits(*self.columns)
+        """Unsigned where no column is off the screen, and else too many for that."""
+        low, high = self.columns
+        if low >= 0 and high <= self.width:
+            return max(1, high.bit_length())
+        return max(_signed_bits(low, high), self.x_bits + 1)
 
     @property
     def edge_remainder_bits(self) -> int:
@@ -78,8 +86,7 @@ class SceneNeeds:
 
     @property
     def edge_fraction_bits(self) -> int:
-        """``setup.edge_fraction_bits`` for the edge that needs the most."""
-        return max(1, self.edge_rows_height.bit_length())
+        return fewest_edge_fraction_bits(self.edge_height, self.edge_rows_height)
 
     def error(self, fraction_bits: int) -> int:
         """The most by which a stored depth or channel is off."""
@@ -108,7 +115,8 @@ class SceneNeeds:
 
 def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:
     """The needs of ``display_list`` at the resolution ``Grid.of`` gives."""
-    outlines = outline(display_list, Grid.of(display_list, x_shift, y_shift))
+    grid = Grid.of(display_list, x_shift, y_shift)
+    outlines = outline(display_list, grid)
     boxes, edges = outlines.boxes, _used_edges(outlines)
     extent = boxes.extent
     # Below 2**44 * 2**13.
@@ -122,6 +130,8 @@ def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0
         drawn=len(product),
         flat=display_list.flat,
         sub_bits=display_list.sub_bits,
+        width=grid.width,
+        x_bits=display_list.width.bit_length(),
         coordinates=_ends(position),
         columns=_ends(np.concatenate([columns for edge in edges for columns in edge.ends()])),
         edge_height=max(int(edge.height.max(initial=1)) for edge in edges),

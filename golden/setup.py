@@ -64,6 +64,16 @@ def edge_fraction_bits(remainder_bits: int, height: int) -> int:
     return (((1 << remainder_bits) - 1) * height).bit_length()
 
 
+def fewest_edge_fraction_bits(height: int, rows_height: int) -> int:
+    """The same, where no edge is higher than ``height``, nor its height times the rows it is
+    followed down greater than ``rows_height``.
+
+    2**f = D * rows will do as well: D is a power of two then, and start and step are multiples of
+    1 / 2D, so that nothing is rounded once 2**f is 2D.
+    """
+    return max((rows_height - 1).bit_length(), height.bit_length())
+
+
 def depth_word_bits(depth_bits: int, fraction_bits: int, width: int, height: int) -> int:
     """Width of carried depth at which every triangle of a ``width`` x ``height`` screen fits."""
     guard = fixed.guard_bits(depth_bits, fraction_bits, width + height - 2)

@@ -32,7 +32,7 @@ class EdgeColumns(wiring.Component):
     The words have as many fraction bits as make the column exact on each row
     (``golden.setup.carry_edges``), so a row may follow any other, and no edge has
     to be stepped.  Left of the screen becomes its first column, right of it the
-    column after its last.
+    column after its last, where that can be (``MachineConfiguration.edges_on_screen``).
 
     Latency: ``latency`` clocks.  Throughput: a row a clock.  All stages move together.
 
@@ -98,9 +98,12 @@ class EdgeColumns(wiring.Component):
         others = [delayed(m, word, 1, f"{name}_odd", enable=move) for word in words[1:]]
         with m.If(move):
             m.d.sync += [first.eq(start + words[0]), total.eq(sum(others, first))]
-        return total[self.configuration.edge_fraction_bits:].as_signed()
+        column = total[self.configuration.edge_fraction_bits:]
+        return column if self.configuration.edges_on_screen else column.as_signed()
 
     def _held(self, column):
+        if self.configuration.edges_on_screen:
+            return column
         widths = {interlace.width for interlace in self.configuration.interlaces()}
         width = Const(widths.pop()) if len(widths) == 1 else self.width
         magnitude = column.as_unsigned()[:-1]

@@ -67,18 +67,16 @@ class TagSweep(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         words = self.configuration.words
-        following = self.address + 1
-        # A power of two: the sum says it by itself.
-        last = following[-1] if words == 1 << len(self.address) else following == words
         left = Signal(3)  # lanes to erase
         taken = Signal(3)  # lanes that were written meanwhile
         everything = Signal()
         m.d.sync += taken.eq(taken | self.overwritten)
 
         def step():
-            m.d.sync += [self.address.eq(following), left.eq(0b111), taken.eq(0)]
-            with m.If(last):
-                m.d.sync += self.address.eq(0)
+            m.d.sync += [self.address.eq(self.address + 1), left.eq(0b111), taken.eq(0)]
+            with m.If(self.address == words - 1):
+                if words != 1 << len(self.address):  # it does not wrap by itself
+                    m.d.sync += self.address.eq(0)
                 m.next = "IDLE"
             with m.Elif(everything):
                 m.next = "ERASE"
