@@ -223,7 +223,8 @@ def _integer(name: str, planned: MachineConfiguration, full: MachineConfiguratio
     return PlanLine(
         f"{name} integer bits", str(widths[0]), str(widths[1]),
         f"a vertex has up to {greatest:,}" + (f", off by up to {error:,}" if error else "")
-        + ("" if planned.stays_in_range else ", and a sign"), triangle_bits(full) - triangle_bits(changed))
+        + ("" if planned.stays_in_range else ", and a sign"),
+        triangle_bits(full) - triangle_bits(changed))
 
 
 def _interpolants(planned: MachineConfiguration, full: MachineConfiguration,

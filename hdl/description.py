@@ -101,8 +101,8 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
                fraction_bits=c.sub_bits),
         number("column", c.x_bits, "pixel column, and one past the last"),
         number("row", c.y_bits, "pixel row, and one past the last"),
-        number("edge", c.edge_word_bits, signed=not c.edges_on_screen, fraction_bits=c.edge_fraction_bits,
-               meaning="first pixel column not left of an edge, exact on each of its rows; sums "
+        number("edge", c.edge_word_bits, signed=not c.edges_on_screen,
+               fraction_bits=c.edge_fraction_bits, meaning="first pixel column not left of an edge, exact on each of its rows; sums "
                "wrap, the column on a row does not"),
         number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
         number("tag", c.tag_bits, "tag of a frame, beside each depth and colour; 0 is none's"),

@@ -187,8 +187,7 @@ class LatticeBlock(wiring.Component):
                         if block_bits <= interlace.unit_bits:
                             x_stride, y_stride = interlace.stride_bits(block_bits)
                             with m.Case(interlace.units):
-                                m.d.comb += [self.lattice.x_stride_bits.eq(x_stride),
-                                             self.lattice.x_mask.eq((1 << x_stride) - 1),
+                                m.d.comb += [self.lattice.x_mask.eq((1 << x_stride) - 1),
                                              self.lattice.y_mask.eq((1 << y_stride) - 1)]
                                 if self.configuration.skew:
                                     m.d.comb += self.lattice.shifted.eq(

@@ -13,7 +13,6 @@ def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
 
     ``x_offset``, ``y_offset``  the first square's column and row
     ``x_mask``, ``y_mask``      the distance between neighbouring squares, a power of two, less 1
-    ``x_stride_bits``           log2 of the distance in x
     ``shifted``                 every other row is shifted by half of it; only in skewed machines
     """
     interlaces = configuration.interlaces()
@@ -22,7 +21,6 @@ def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
     x_bits, y_bits = map(max, zip(*strides, strict=True))
     return data.StructLayout({
         "x_offset": x_bits, "y_offset": y_bits, "x_mask": x_bits, "y_mask": y_bits,
-        "x_stride_bits": range(x_bits + 1),
         **({"shifted": 1} if configuration.skew else {}),
     })
 

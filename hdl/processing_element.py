@@ -107,7 +107,7 @@ class ProcessingElement(wiring.Component):
 
         # The drawing pipeline.
         pipeline = wires(m, "drawing_wires")
-        # Said a clock ahead, with a place for the span of this clock: what waits for it reaches far.
+        # Said a clock ahead, with a place for the span of this clock: many wait for it.
         room = Signal()
         m.d.sync += room.eq(spans.level < SPANS_WAITING - 1)
         pipeline.d.comb += [
