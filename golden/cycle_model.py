@@ -124,7 +124,7 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         bound += [np.bincount(clocks.element, clocks.walk, elements),
                   np.bincount(spans.element, spans.length, elements)]
         costs = list(zip(*(getattr(clocks, name).tolist() for name in (
-            "element", "walk", "draw", "alone", "held", "started")), strict=True))
+            "element", "walk", "draw", "alone", "held")), strict=True))
         places = np.searchsorted(clocks.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
         for first, end in pairwise(places):
             sent = cage.broadcast(0.0 if arrivals is None else arrivals.arrival())
@@ -193,8 +193,7 @@ class _Cage:
         self._earlier_room = self._room
         return self._sent
 
-    def take(self, element: int, walk: float, draw: float, alone: float, held: float,
-             started: float) -> None:
+    def take(self, element: int, walk: float, draw: float, alone: float, held: float) -> None:
         """The triangle that was sent; see ``ElementClocks``."""
         pipeline = self._pipeline
         load = max(self._load[element], self._sent + pipeline.queue)
@@ -204,6 +203,6 @@ class _Cage:
         self._drawn[element] = drawn
         places = self._free[element]
         places.popleft()
-        places.append(1 + max(walked + pipeline.found, drawn - started))
+        places.append(1 + max(walked + pipeline.found, drawn - pipeline.valued))
         self._room = max(self._room, places[0])
         self.finished = max(self.finished, drawn + pipeline.finish)

@@ -25,11 +25,10 @@ class Pipeline:
 
     ``queue``        from a broadcast to the walker's load, where that is idle
     ``latency``      from the load to the read of the first row's first fragment
-    ``found``        from a row's turn in the walker until its span is ready to start
+    ``found``        from a row's turn in the walker until its first pixel is ready to be valued
     ``spans_ahead``  spans that fit between the walker and the fragments
     ``lead``         by how much the walk runs ahead of the fragments, where they are full
-    ``starting``     spans on their way between their start and the fragments
-    ``start``        from a span's start to its fragments
+    ``valued``       from the pixel's valuing to the end of its fragment's read
     ``first_row``    to find a triangle's first row, in a domain of several blocks of units
     ``block``        from the last row of a block to the first one of the next
     ``again``        from such a domain's last row to the next load
@@ -39,14 +38,13 @@ class Pipeline:
     queue: int = 3
     latency: int = 15
     found: int = 8
-    spans_ahead: int = 20
-    lead: int = 7
-    starting: int = 4
-    start: int = 2
+    spans_ahead: int = 17
+    lead: int = 9
+    valued: int = 6
     first_row: int = 2
     block: int = 3
     again: int = 2
-    finish: int = 7
+    finish: int = 4
 
 
 PIPELINE = Pipeline()
@@ -65,7 +63,6 @@ class ElementClocks:
                   where nothing came before
     ``held``      float64 (n,): the last span leaves the walker no sooner than so long before its
                   last fragment's end
-    ``started``   float64 (n,): so long before that, it starts and needs the interpolants no more
     """
 
     triangle: Int64
@@ -74,7 +71,6 @@ class ElementClocks:
     draw: Float64
     alone: Float64
     held: Float64
-    started: Float64
 
 
 def walks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
@@ -136,11 +132,10 @@ def element_clocks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpan
 
     alone = end + (np.maximum.reduceat(offset - begins[:-1], first) if len(first) else 0)
     held = before_end(pipeline.spans_ahead) + pipeline.lead
-    started = before_end(pipeline.starting) + pipeline.start
     order = np.lexsort((element, triangle))
     return ElementClocks(
         triangle[order], element[order], walk[triangle, element][order].astype(np.float64),
-        (end - begins[first])[order], alone[order], held[order], started[order])
+        (end - begins[first])[order], alone[order], held[order])
 
 
 def _entries(spans: LatticeSpans, pairs: Int64, clocks: Float64, walk: Int64, again: Int64,

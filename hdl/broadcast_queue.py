@@ -32,7 +32,7 @@ class BroadcastQueue(wiring.Component):
     until it is gone, so it comes after the triangles before it and before those
     after it; and what looks after such operations is not in the triangles' way.
 
-    Latency: three clocks; two for an operation.  Throughput: a triangle a clock.
+    Latency: ``latency`` clocks; ``operation_latency`` for what finds the queue empty.  Throughput: a triangle a clock.
 
     Members
     -------
@@ -55,6 +55,7 @@ class BroadcastQueue(wiring.Component):
     """
 
     latency = 3
+    operation_latency = 2
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration

@@ -9,7 +9,7 @@ from typing import Any
 from amaranth.lib import wiring
 
 from ..golden.configuration import MachineConfiguration
-from ..golden.plan import full_machine
+from ..golden.plan import on_screen_machine
 from ..hdl.memory_unit import MemoryUnit
 from .bench_cases import DEPTH_BITS, SUB_BITS
 from .domain import Domain
@@ -47,11 +47,11 @@ class Board:
     changes: Mapping[str, Any] = field(default_factory=dict)
 
     def part(self, cards: str, width: int, height: int) -> Part:
-        """In a machine that is exact for every triangle on the screen.  Raises ``InputError``."""
+        """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
         machine = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS, "shading": "flat",
                    "memory_ports": 2} | dict(self.changes)
-        return Part(full_machine(cards=cards, width=width, height=height, **machine), self.name,
-                    self.build)
+        return Part(on_screen_machine(cards=cards, width=width, height=height, **machine),
+                    self.name, self.build)
 
 
 #: By the names that people choose them by.

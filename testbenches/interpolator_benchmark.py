@@ -1,6 +1,6 @@
 """Fraction bits against remainders: ``python -m cardcage.testbenches.interpolator_benchmark``.
 
-Simulates the machine's depth interpolator (``SpanStart`` and ``FragmentStepper``) and two
+Simulates the machine's depth interpolator (``FragmentStepper`` and ``Interpolator``) and two
 that carry quotient and remainder on the same spans, checks every value against the exact
 reference, and prints the clocks and what yosys makes of each for an ECP5 (extra ``fpga``).
 """

@@ -10,7 +10,7 @@ from math import floor
 from typing import Any
 
 import numpy as np
-from amaranth.hdl import Module, unsigned
+from amaranth.hdl import Module, Signal, unsigned
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -23,20 +23,23 @@ from ..golden.grid import Grid
 from ..golden.setup import prepare
 from ..golden.worst_error import biased_value
 from ..hdl.fragment_stepper import FragmentStepper
+from ..hdl.interpolator import Interpolator
 from ..hdl.layouts import planes_layout, span_layout
-from ..hdl.span_start import SpanStart
 from .remainder_interpolator import PipelinedRemainderInterpolator, RemainderInterpolator
+
+
+_SPAN_FIELDS = ("x", "end", "left", "y_steps", "stride")
 
 
 class FixedPointInterpolator(wiring.Component):
     """Depth alone of the machine's own parts: spans in, the value of every pixel out.
 
-    Latency and throughput are those of ``SpanStart`` and ``FragmentStepper``.
+    Latency and throughput are those of ``FragmentStepper`` and ``Interpolator``.
 
     Members
     -------
     spans: In(stream of a struct)
-        ``plane``, and ``x_steps``, ``y_steps``, ``more``, ``x_stride_bits`` as in ``span_layout``.
+        ``plane``, and ``x``, ``end``, ``left``, ``y_steps``, ``stride`` as in ``span_layout``.
     values: Out(stream of unsigned(depth_bits))
     """
 
@@ -46,30 +49,33 @@ class FixedPointInterpolator(wiring.Component):
         super().__init__({
             "spans": In(stream.Signature(data.StructLayout({
                 "plane": planes_layout(configuration).members["depth"],
-                **{name: members[name] for name in ("x_steps", "y_steps", "more",
-                                                    "x_stride_bits")},
+                **{name: members[name] for name in _SPAN_FIELDS},
             }))),
             "values": Out(stream.Signature(unsigned(configuration.depth_bits))),
         })
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.start = start = SpanStart(configuration=self.configuration)
         m.submodules.stepper = stepper = FragmentStepper(configuration=self.configuration)
-        wiring.connect(m, start.started, stepper.started)
-        span, given = start.spans.payload, self.spans.payload
+        m.submodules.interpolator = interpolator = Interpolator(configuration=self.configuration)
+        wiring.connect(m, stepper.pixels, interpolator.pixels)
+        span, given = stepper.spans.payload, self.spans.payload
+        # Each span is a triangle of its own, whose plane goes along with its pixels.
+        held, plane = (Signal(given.plane.shape(), name=name) for name in ("held", "plane"))
+        with m.If(stepper.spans.ready):
+            m.d.sync += held.eq(given.plane)
+        with m.If(~stepper.pixels.valid | stepper.pixels.ready):
+            m.d.sync += plane.eq(held)
         m.d.comb += [
-            # Each span as a triangle of its own.
             span.last.eq(1),
-            start.planes.payload.depth.eq(given.plane),
-            start.planes.valid.eq(self.spans.valid),
-            *(span[name].eq(given[name]) for name in ("x_steps", "y_steps", "more",
-                                                      "x_stride_bits")),
-            start.spans.valid.eq(self.spans.valid),
-            self.spans.ready.eq(start.spans.ready),
-            self.values.payload.eq(stepper.fragments.payload.depth),
-            self.values.valid.eq(stepper.fragments.valid),
-            stepper.fragments.ready.eq(self.values.ready),
+            *(span[name].eq(given[name]) for name in _SPAN_FIELDS),
+            stepper.spans.valid.eq(self.spans.valid),
+            self.spans.ready.eq(stepper.spans.ready),
+            interpolator.planes.payload.depth.eq(plane),
+            interpolator.planes.valid.eq(1),
+            self.values.payload.eq(interpolator.fragments.payload.depth),
+            self.values.valid.eq(interpolator.fragments.valid),
+            interpolator.fragments.ready.eq(self.values.ready),
         ]
         return m
 
@@ -78,7 +84,12 @@ class FixedPointInterpolator(wiring.Component):
 class Runs:
     """Runs of pixels, at strides of 1, 2 and 4, and the exact depth of each pixel in order.
 
-    ``primitive`` ``x`` ``y`` ``more`` ``stride_bits``  a number for each run, as in ``span_layout``
+    A number for each run:
+
+    ``primitive``    its triangle
+    ``x``, ``y``     its first pixel
+    ``more``         pixels after that
+    ``stride_bits``  log2 of the distance between neighbouring pixels
     """
 
     primitive: list[int]
@@ -152,11 +163,14 @@ def forms(listed: DisplayList, runs: Runs, *, units: int, double_area: int) -> l
                                                   runs.stride_bits, strict=True):
         row = row_of[primitive]
         left, top = int(prepared.left[row]), int(prepared.top[row])
-        span = {"x_steps": x - left, "y_steps": y - top, "more": more,
-                "x_stride_bits": stride_bits}
-        fixed_spans.append({**span, "plane": {
-            part: getattr(prepared.depth, part)[row] for part in ("start", "step_x", "step_y")}})
-        remainder_spans.append({**span, **_remainder_planes(listed, primitive, left, top)})
+        fixed_spans.append({
+            "x": x, "end": x + (more << stride_bits) + 1, "left": left, "y_steps": y - top,
+            "stride": 1 << stride_bits, "plane": {
+                part: getattr(prepared.depth, part)[row] % (1 << configuration.depth_plane_bits)
+                for part in ("start", "step_x", "step_y")}})
+        remainder_spans.append({
+            "x_steps": x - left, "y_steps": y - top, "more": more, "x_stride_bits": stride_bits,
+            **_remainder_planes(listed, primitive, left, top)})
     return [
         Form(f"fixed point, F = {fraction_bits}",
              lambda: FixedPointInterpolator(configuration=configuration), fixed_spans),

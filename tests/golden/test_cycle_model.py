@@ -233,7 +233,7 @@ def written_out(configuration, listed, pipeline, depth, setup):
 
             load[element] = max(begin + walk, back(pipeline.spans_ahead) - pipeline.lead)
             freed[element].append(1 + max(begin + walk + pipeline.found,
-                                          back(pipeline.starting) - pipeline.start))
+                                          free[element] - pipeline.valued))
         finished.append(max(free) + pipeline.finish)
     return finished
 

@@ -4,7 +4,7 @@ import random
 from dataclasses import replace
 
 import pytest
-from hdl_bench.bench import Agent, Drive, simulate
+from hdl_bench.bench import Agent, Drive, Watch, simulate
 from hdl_bench.pictures import prepare, prepared_values, random_triangles, small_machine
 from hdl_bench.streams import Sink, no_pause, pauses
 
@@ -45,63 +45,76 @@ class Announcer(Agent):
         self.clock += 1
 
 
-def run(kind, seed, *, whole=1, pause=(no_pause, no_pause, no_pause), depth=16):
+def run(kind, seed, *, whole=1, pause=(no_pause,) * 4, depth=16, others=0.2):
     skew = "skewed" in kind
     configuration = replace(small_machine("PM" + 15 * "M", 16, 16), fifo_depth=depth, skew=skew)
     x_offset, x_mask, y_offset, y_mask = LATTICES[kind]
     display_list = random_triangles(f"{kind} {seed}", 60, width=16, height=16)
     triangles = prepared_values(configuration, prepare(configuration, display_list))
-    packets, kept = [], []
+    packets, kept, operations = [], [], []
     source = random.Random(f"frame starts {seed}")
     for triangle in triangles:
-        if source.random() < 0.2:
-            packets.append({"operation": Operation.FRAME_START})
-            kept.append((Operation.FRAME_START, None))
+        if source.random() < others:
+            operation = source.choice([Operation.FRAME_START, Operation.READ_DEPTH])
+            packets.append({"operation": operation})
+            operations.append((operation, len(kept)))
         packets.append({"operation": Operation.DRAW, "body": {"draw": triangle}})
-        rows = [y for y in range(triangle["top"], 16) if (y - y_offset) & y_mask == 0]
+        rows = [y for y in range(triangle["top"], 16 + 2 * (y_mask + 1))
+                if (y - y_offset) & y_mask == 0]
         columns = any((x - x_offset) & (x_mask >> skew) == 0
                       for x in range(triangle["left"], triangle["right"]))
-        if not whole or (columns and rows and rows[0] < triangle["bottom"]):
-            kept.append((Operation.DRAW, (triangle, rows[0] if rows else None)))
+        if not whole or (columns and rows[0] < triangle["bottom"]):
+            kept.append((triangle, rows))
     dut = BroadcastQueue(configuration=configuration)
     announcer = Announcer(dut, packets, pause[0])
-    planes = [triangle["planes"] for operation, (triangle, _) in
-              ((operation, body) for operation, body in kept if operation == Operation.DRAW)]
-    operations_sink = Sink(dut.operations, len(kept), pause[1])
-    planes_sink = Sink(dut.planes, len(planes), pause[2])
+    triangles_sink = Sink(dut.triangles, len(kept), pause[1])
+    planes_sink = Sink(dut.planes, len(kept), pause[2])
+    operations_sink = Sink(dut.operations, len(operations), pause[3])
+    before = []  # triangles and planes that had been taken as each operation was
 
     def lines(ctx, clock):
         ctx.set(dut.lattice, {"x_offset": x_offset, "x_mask": x_mask, "y_offset": y_offset,
                               "y_mask": y_mask, **({"shifted": 1} if skew else {})})
         ctx.set(dut.whole, whole)
 
-    simulate(dut, Drive(lines), announcer, operations_sink, planes_sink, after=4)
-    for item, (operation, body) in zip(operations_sink.items, kept, strict=True):
-        assert item.operation == operation
-        if operation == Operation.FRAME_START:
-            continue
-        triangle, first_row = body
-        drawn = item.triangle
-        assert all(drawn[name] == triangle[name] for name in ("top", "bottom", "left", "right"))
-        assert drawn.lower.step == triangle["lower"]["step"]
+    def watch(ctx, clock):
+        taken = len(triangles_sink.items), len(planes_sink.items)
+        if ctx.get(dut.operations.valid) and ctx.get(dut.operations.ready):
+            before.append(taken)
+        if ctx.get(dut.empty):
+            assert taken[0] == taken[1] and not ctx.get(dut.triangles.valid)
+
+    # The watch looks before the sinks take.
+    simulate(dut, Drive(lines), Watch(watch), announcer, triangles_sink, planes_sink,
+             operations_sink, after=4)
+    assert [Operation(item) for item in operations_sink.items] == [
+        operation for operation, _ in operations]
+    assert before == [(count, count) for _, count in operations]
+    for item, (triangle, rows) in zip(triangles_sink.items, kept, strict=True):
+        assert all(item[name] == triangle[name] for name in ("top", "bottom", "left", "right"))
+        assert item.lower.step == triangle["lower"]["step"]
         if whole:
-            assert drawn.first_row == first_row
-    for item, plane in zip(planes_sink.items, planes, strict=True):
-        assert item.depth.step_y == plane["depth"]["step_y"] and item.blue == plane["blue"]
-    return dut, announcer, operations_sink, kept, packets
+            assert (item.first_row, item.second_row) == tuple(rows[:2])
+            assert item.one_row == (rows[1] >= triangle["bottom"])
+    for item, (triangle, _) in zip(planes_sink.items, kept, strict=True):
+        plane = triangle["planes"]
+        # Words are taken modulo their field.
+        assert item.depth.step_y == plane["depth"]["step_y"] % (1 << configuration.depth_plane_bits)
+        assert item.blue == plane["blue"]
+    return dut, announcer, triangles_sink, operations_sink, len(kept), len(triangles)
 
 
 @pytest.mark.parametrize("kind", LATTICES)
 @pytest.mark.parametrize("seed", range(2))
 def test_what_misses_the_lattice_is_passed_over(kind, seed):
-    _, _, _, kept, packets = run(kind, seed, pause=tuple(pauses(f"{part} {seed}")
-                                                         for part in ("in", "out", "planes")))
-    assert len(kept) == len(packets) if kind == "everything" else len(kept) < len(packets)
+    *_, kept, sent = run(kind, seed, pause=tuple(
+        pauses(f"{part} {seed}") for part in ("in", "out", "planes", "operations")))
+    assert kept == sent if kind == "everything" else kept < sent
 
 
 def test_a_domain_of_several_blocks_keeps_everything():
-    _, _, _, kept, packets = run("one of sixteen", 0, whole=0)
-    assert len(kept) == len(packets)
+    *_, kept, sent = run("one of sixteen", 0, whole=0)
+    assert kept == sent
 
 
 @pytest.mark.parametrize("depth", [2, 3, 4])
@@ -109,11 +122,18 @@ def test_a_domain_of_several_blocks_keeps_everything():
 def test_short_queues_lose_nothing(depth, seed):
     """Words come as soon as there is room, and leave slowly or at once."""
     for leave in (no_pause, pauses(f"leave {seed}")):
-        run("everything", seed, pause=(no_pause, leave, leave), depth=depth)
+        run("everything", seed, pause=(no_pause, leave, leave, leave), depth=depth)
 
 
 def test_latency_and_throughput():
-    dut, announcer, sink, _, packets = run("everything", "speed")
-    assert announcer.strobes == list(range(len(packets)))
+    dut, announcer, sink, *_ = run("everything", "speed", others=0)
+    assert announcer.strobes == list(range(60))
     assert dut.latency == 3
     assert sink.clocks == [clock + dut.latency for clock in announcer.strobes]
+
+
+def test_latency_of_an_operation():
+    dut, announcer, _, sink, *_ = run("everything", "operations", others=1,
+                                      pause=(lambda: 9, no_pause, no_pause, no_pause))
+    assert dut.operation_latency == 2
+    assert sink.clocks == [clock + dut.operation_latency for clock in announcer.strobes[::2]]

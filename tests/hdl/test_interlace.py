@@ -57,9 +57,8 @@ def test_pixel_address(picture):
                     assert place == (unit_of(units, x, y), y // down * pitch + x // across)
                     places.add(place)
             assert len(places) == interlace.width * interlace.height
-            words = ctx.get(dut.words)
-            assert words == interlace.words <= configuration.words
-            assert max(address for _, address in places) < words
+            assert ctx.get(dut.last_word) + 1 == interlace.words <= configuration.words
+            assert max(address for _, address in places) < interlace.words
             assert {unit for unit, _ in places} <= set(range(units))
 
     evaluate(dut, steps)
@@ -158,7 +157,7 @@ def test_pixels_in_squares_and_skewed(cards, block, units, picture):
                 assert place == (interlace.unit(x, y), interlace.address(x, y))
                 places.add(place)
         assert len(places) == interlace.width * interlace.height
-        assert ctx.get(where.words) == interlace.words
+        assert ctx.get(where.last_word) + 1 == interlace.words
         assert max(address for _, address in places) < interlace.words <= configuration.words
 
     def lines(ctx):

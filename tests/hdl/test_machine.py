@@ -64,12 +64,13 @@ def test_wires(order):
                     generator = machine.scan_generator.scan
                     assert ctx.get(getattr(card.scan, name).as_value()) == ctx.get(
                         getattr(generator, name).as_value())
-                for name in ("front", "depth_tag", "background", "initialise", "sweep"):
+                for name in ("front", "depth_tag", "initialise", "sweep"):
                     assert ctx.get(getattr(card.pictures, name)) == ctx.get(
                         getattr(machine.controller.pictures, name))
                 for place in range(2):
                     assert ctx.get(card.pictures.color_tag[place]) == ctx.get(
                         machine.controller.pictures.color_tag[place])
+        assert ctx.get(machine.scan_generator.background) == ctx.get(machine.controller.background)
         assert ctx.get(machine.controller.total) == number == configuration.units
         ready, done = ([ctx.get(getattr(element.broadcast, name))
                         for element in machine.processing_elements] for name in ("ready", "done"))
@@ -118,8 +119,11 @@ def test_a_frame_read_back(order):
 
     def video(ctx, clock):
         driven = [ctx.get(unit.scan.video) for unit in machine.memory_units]
-        assert sum(color != 0 for color in driven) <= 1  # one unit has the bus
+        drawn = [ctx.get(unit.scan.drawn) for unit in machine.memory_units]
+        assert sum(drawn) <= 1  # one unit has the bus
+        assert not any(color for color, own in zip(driven, drawn, strict=True) if not own)
         assert ctx.get(machine.scan_generator.scan.video) == sum(driven)
+        assert ctx.get(machine.scan_generator.scan.drawn) == sum(drawn)
         colors.update(driven)
 
     simulate(machine, Source(machine.commands, words, pauses(order)), sink, Watch(video),

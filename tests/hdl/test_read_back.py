@@ -19,7 +19,7 @@ def read_back(first, end, words, *, scan=0.0, seed=0, rounds=1, pause=no_pause, 
     def inputs(ctx, clock):
         ctx.set(dut.first, first)
         ctx.set(dut.end, end)
-        ctx.set(dut.words, words)
+        ctx.set(dut.last_word, words - 1)
 
     expected = [memory.depth[unit, address]
                 for unit in range(first, end) for address in range(words)] * rounds
@@ -44,7 +44,7 @@ def test_units_in_order_addresses_ascending(first, end, words, seed):
 def test_latency_and_throughput():
     service, sink, memory = read_back(0, 4, 16)
     reads = [read[0] for read in memory.reads]
-    assert reads == list(range(1, 65))
+    assert reads == list(range(1, 129, 2))
     assert sink.clocks == [clock + ReadBack.latency for clock in reads]
     # Done in the clock in which the last word is taken.
     assert service.ended == [sink.clocks[-1]]

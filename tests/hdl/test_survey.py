@@ -30,9 +30,9 @@ def survey(first, end, total, *, depth_bits=8, scan=0.0, seed=0, rounds=1, pause
 
 
 def cost(first, end, total):
-    """Clocks after the start: write, read and compare twice a unit, once at the one that is
-    silent, one clock to see that there are no more."""
-    return 6 * (end - first) + (1 if end == total else 3)
+    """Clocks after the start: write, read, compare and decide twice a unit, once at the one that
+    is silent, one clock to see that there are no more."""
+    return 8 * (end - first) + (1 if end == total else 4)
 
 
 @pytest.mark.parametrize("total", [1, 2, 5, 8, 16])

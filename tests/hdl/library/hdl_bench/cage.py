@@ -86,6 +86,7 @@ class Units(Agent):
     """All memory units as one: passes that take ``words`` clocks, and what the lines show."""
 
     def __init__(self, dut, words):
+        self.dut = dut
         self.lines = dut.pictures
         self.words = words
         self.left = 0
@@ -116,7 +117,7 @@ class Units(Agent):
                 self.left = self.words
         self.tags.append(tuple(ctx.get(tag) for tag in (self.lines.depth_tag,
                                                         *self.lines.color_tag)))
-        self.backgrounds.append(ctx.get(self.lines.background))
+        self.backgrounds.append(ctx.get(self.dut.background))
         self.clock += 1
 
 
