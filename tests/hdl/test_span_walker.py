@@ -98,13 +98,19 @@ def reached(configuration, display_list, first, end):
     start, size = next(blocks(first, end), (0, 0))
     kept, values = [], []
     for index, triangle in enumerate(prepared_values(configuration, prepared)):
+        # The one after the last row may lie past the picture.
         rows = (owned_rows(configuration.interlace, start, size, triangle["top"],
-                           triangle["bottom"]) if size == end - first else [0])
-        if rows:
+                           triangle["bottom"] + 64) if size == end - first else [0, 0])
+        if rows[0] < triangle["bottom"]:
             kept.append(index)
             del triangle["planes"]
-            values.append(triangle | {"first_row": rows[0]})
+            values.append(triangle | {"first_row": rows[0], "second_row": rows[1],
+                                      "one_row": rows[1] >= triangle["bottom"]})
     return kept, values
+
+
+def columns(span):
+    return range(span.x, span.end, span.stride)
 
 
 #: Clocks until the walker knows its lattice.
@@ -151,9 +157,9 @@ def run(configuration, display_list, first, end, pause):
     found = [(clock, span) for clock, span in zip(sink.clocks, sink.items, strict=True)
              if not span.none]
     for (_, span), (index, (x, y, pixels, across)) in zip(found, expected, strict=True):
-        assert (span.x, span.y, span.more, 1 << span.x_stride_bits) == (x, y, pixels - 1, across)
+        assert (span.x, span.y, len(columns(span)), span.stride) == (x, y, pixels, across)
         triangle = triangles[index]
-        assert (span.x_steps, span.y_steps) == (x - triangle["left"], y - triangle["top"])
+        assert (span.left, span.y_steps) == (triangle["left"], y - triangle["top"])
     # What ends a triangle comes after all its spans.
     ends = [place for place, span in enumerate(sink.items) if span.last]
     assert ends == sorted(ends) and ends[-1] == len(sink.items) - 1
@@ -259,8 +265,7 @@ def test_every_share_of_eight_units_adds_up():
         for first, end in pairwise(ends):
             _, _, _, found = run(configuration, display_list, first, end,
                                  (no_pause, pauses(round_)))
-            pixels += [(span.x + step * (1 << span.x_stride_bits), span.y)
-                       for _, span in found for step in range(span.more + 1)]
+            pixels += [(x, span.y) for _, span in found for x in columns(span)]
         everything = [pixel for primitive in range(5)
                       for pixel in covered(display_list, primitive, configuration.interlace)]
         assert sorted(pixels) == sorted(everything)
