@@ -89,8 +89,9 @@ def on_screen_machine(**fields: Any) -> MachineConfiguration:
     """
     machine = full_machine(**fields)
     height = machine.height << machine.sub_bits
-    return replace(machine, edge_column_bits=machine.x_bits,
-                   edge_remainder_bits=height.bit_length(),
+    farthest = max(machine.width, machine.height) << machine.sub_bits
+    return replace(machine, coordinate_bits=1 + farthest.bit_length(),
+                   edge_column_bits=machine.x_bits, edge_remainder_bits=height.bit_length(),
                    edge_fraction_bits=fewest_edge_fraction_bits(height, height * machine.height))
 
 

@@ -97,7 +97,7 @@ def test_every_triangle_of_a_tiny_grid(name):
     exact_bits = scene_fraction_bits(display_list)
     values = set(map(tuple, display_list.depth.tolist()))
     assert len(values) == (2**case.depth_bits - 1) ** 3
-    worst_share, beyond, needed, differing = 0.0, 0, 0, []
+    worst_share, beyond, needed, outside, differing = 0.0, 0, 0, 0, []
     for fraction_bits in range(exact_bits + 2):
         prepared = prepare(display_list, fraction_bits=fraction_bits)
         index = np.searchsorted(prepared.primitive, truth.triangle)
@@ -117,9 +117,15 @@ def test_every_triangle_of_a_tiny_grid(name):
             error = (2 * area * carried) - (biased << fraction_bits)
             assert (error > -pixels * area).all() and (error <= pixels * area).all()
             worst_share = max(worst_share, (abs(error) / (pixels * area)).max())
-            # Below a bound of 1/4 the half alone keeps it in range: nothing is saturated.
-            inside = (carried >> fraction_bits)[2 * pixels < 1 << fraction_bits]
-            assert ((inside >= 0) & (inside <= high)).all()
+            # Below a bound of 1/4 the half alone keeps it between the vertices: nothing is
+            # saturated, and no sign is needed.  With one bit less some leave the whole range.
+            whole = carried >> fraction_bits
+            of_vertices = vertex_values[truth.triangle]
+            inside = 2 * pixels < 1 << fraction_bits
+            assert (whole >= of_vertices.min(axis=1))[inside].all()
+            assert (whole <= of_vertices.max(axis=1))[inside].all()
+            a_bit_less = ~inside & (pixels < 1 << fraction_bits)
+            outside += int(np.count_nonzero(((whole < 0) | (whole > high))[a_bit_less]))
             # Against the value and a half alone the bias counts, where D is even and 2**F a
             # multiple of its powers of two; elsewhere no start is rounded that far.
             unbiased = error + ((biased - 2 * numerator - area) << fraction_bits)
@@ -142,8 +148,9 @@ def test_every_triangle_of_a_tiny_grid(name):
     print(f"{name}: {display_list.triangles} triangles, {len(truth.area)} fragments, four values "
           f"each; F = 0 … {exact_bits + 1}: {differing} wrong; worst error {worst_share:.4f} of "
           f"the bound; {beyond} beyond it by the bias; {needed} wrong "
-          "with one bit less than enough for them")
-    assert worst_share == 1 and beyond > 0 and needed > 0
+          f"with one bit less than enough for them; {outside} out of range with one bit less than "
+          "keeps them in it")
+    assert worst_share == 1 and beyond > 0 and needed > 0 and outside > 0
     assert differing[exact_bits:] == [0, 0] and differing[0] > 0
     assert sorted(differing, reverse=True) == differing
     assert len(truth.area) > 10_000

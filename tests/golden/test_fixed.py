@@ -108,6 +108,24 @@ def test_guard_bits_are_the_fewest_from_two(value_bits, fraction_bits, extent):
     assert guard >= 2 and enough(guard) and not enough(guard - 1)
 
 
+@pytest.mark.parametrize("extent", [0, 1, 2, 3, 14, 15, 1022, 8190])
+def test_values_stay_in_range_from_where_the_bound_is_below_a_quarter(extent):
+    least = next(bits for bits in range(65) if fixed.stays_in_range(bits, extent))
+    for bits in range(65):
+        bound = Fraction(1 + extent, 2 ** (bits + 1))
+        assert fixed.stays_in_range(bits, extent) == (bound < Fraction(1, 4)) == (bits >= least)
+
+
+@pytest.mark.parametrize("area", range(1, 30))
+def test_below_a_quarter_no_floor_leaves_the_range(area):
+    """Of the least and the greatest value, off by anything below the bound, either way; with the
+    bound at a quarter the greatest of D = 2 does."""
+    almost = Fraction(1, 4) - Fraction(1, 10**9)
+    half = Fraction(2 * (area // 2) + 1, 2 * area)
+    assert floor(half - almost) == floor(half + almost) == 0
+    assert (floor(half + Fraction(1, 4)) == 1) == (area == 2)
+
+
 @pytest.mark.parametrize("fraction_bits", [-1, 65, 2.0, True, None])
 def test_fraction_bits_out_of_range(fraction_bits):
     with pytest.raises(InputError, match="fraction bits"):

@@ -13,12 +13,13 @@ from cardcage.golden import bit_true, exact
 from cardcage.golden.configuration import MachineConfiguration, configure
 from cardcage.golden.display_list import DisplayList
 from cardcage.golden.errors import InputError
-from cardcage.golden.fixed import to_signed
+from cardcage.golden.fixed import to_signed, wrap
 from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.plan import (
     error_fraction_bits,
     full_machine,
     on_screen_fraction_bits,
+    on_screen_machine,
     plan,
     triangle_bits,
 )
@@ -94,7 +95,10 @@ def test_widths_are_the_fewest(seed, x_shift, y_shift):
     needs = scene_needs(display_list, x_shift=x_shift, y_shift=y_shift)
     columns, heights, products = edge_columns(display_list, x_shift, y_shift)
     assert needs.columns == (min(columns), max(columns))
-    assert needs.edge_column_bits == signed_bits(columns)
+    assert needs.width == -(-display_list.width >> x_shift)
+    on_screen = all(0 <= column <= needs.width for column in columns)
+    assert needs.edge_column_bits == (max(1, max(columns).bit_length()) if on_screen else
+                                      max(signed_bits(columns), needs.x_bits + 1))
     assert needs.edge_height == max(heights)
     assert needs.edge_remainder_bits == max(heights).bit_length()
     assert needs.edge_rows_height == max(products)
@@ -115,17 +119,20 @@ def test_carried_edges_are_exact_on_every_row(seed):
     for edges, begin, end in ((prepared.long, prepared.top, prepared.bottom),
                               (prepared.upper, prepared.top, prepared.middle),
                               (prepared.lower, prepared.middle, prepared.bottom)):
-        assert wrong_columns(edges, end - begin, needs.edge_column_bits,
-                             needs.edge_fraction_bits) == 0
+        assert wrong_columns(edges, end - begin, needs) == 0
 
 
-def wrong_columns(edges, rows, column_bits, fraction_bits):
-    """On how many rows the carried edge's column is not the quotient."""
+def wrong_columns(edges, rows, widths, fraction_bits=None):
+    """On how many rows the carried edge's column is not the quotient, in the words that
+    ``widths`` (needs or a machine) say; ``fraction_bits`` instead of theirs."""
+    column_bits = widths.edge_column_bits
+    if fraction_bits is None:
+        fraction_bits = widths.edge_fraction_bits
+    read = wrap if column_bits <= widths.x_bits else to_signed
     carried = carry_edges(edges, column_bits=column_bits, fraction_bits=fraction_bits)
     index = np.repeat(np.arange(len(rows)), rows)
     row = np.concatenate([np.arange(count) for count in rows])
-    column = to_signed((carried.start[index] + row * carried.step[index]) >> fraction_bits,
-                       column_bits)
+    column = read((carried.start[index] + row * carried.step[index]) >> fraction_bits, column_bits)
     exact_column = edges.column[index] + row * edges.column_step[index] + (
         edges.remainder[index] + row * edges.remainder_step[index]) // edges.denominator[index]
     return int((column != exact_column).sum())
@@ -139,10 +146,8 @@ def test_an_edge_that_needs_its_last_fraction_bit():
         needs = scene_needs(display_list)
         prepared = prepare(display_list, fraction_bits=0)
         rows = prepared.bottom - prepared.top
-        assert wrong_columns(prepared.long, rows, needs.edge_column_bits,
-                             needs.edge_fraction_bits) == 0
-        wrong += wrong_columns(prepared.long, rows, needs.edge_column_bits,
-                               needs.edge_fraction_bits - 1) > 0
+        assert wrong_columns(prepared.long, rows, needs) == 0
+        wrong += wrong_columns(prepared.long, rows, needs, needs.edge_fraction_bits - 1) > 0
     assert wrong > 0
 
 
@@ -161,26 +166,52 @@ def carried_range(display_list, fraction_bits):
     return min(wholes), max(wholes)
 
 
+def machine_of(display_list, fraction_bits):
+    return configure(display_list, cards=CARDS, fraction_bits=fraction_bits)
+
+
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("fraction_bits", [0, 2, 5, "exact"])
+@pytest.mark.parametrize("fraction_bits", [0, 2, 5, 6, "exact"])
 def test_carried_depth_fits(seed, fraction_bits):
+    """Signed with its error, or unsigned between the vertices: on 16 x 16 pixels from 6 bits on."""
     display_list = random_list(seed)
     needs = scene_needs(display_list)
-    bits = needs.exact_fraction_bits if fraction_bits == "exact" else fraction_bits
-    low, high = carried_range(display_list, bits)
-    assert signed_bits([low, high]) <= needs.depth_integer_bits(bits)
-    if fraction_bits == "exact":
-        assert (low >= 0, high <= needs.greatest_depth) == (True, True)
+    machine = machine_of(display_list, None if fraction_bits == "exact" else fraction_bits)
+    low, high = carried_range(display_list, machine.fraction_bits)
+    bits = needs.depth_integer_bits(machine)
+    assert machine.stays_in_range == (machine.fraction_bits >= 6)
+    if machine.stays_in_range:
+        assert low >= display_list.depth.min() and high <= needs.greatest_depth < 1 << bits
+        assert bits == needs.greatest_depth.bit_length()
+    else:
+        assert signed_bits([low, high]) <= bits
+        assert bits > needs.greatest_depth.bit_length()
 
 
 def test_carried_depth_has_no_bit_to_spare():
-    """A level triangle at the greatest depth of its width fills the word; its sign is needed."""
+    """A level triangle at the greatest depth of its width fills the word; no sign is needed."""
     for depth in (1, 2, 3, 127, 128, 4094):
         display_list = triangles([[0, 0], [200, 8], [8, 200]], depth=depth)
         needs = scene_needs(display_list)
-        bits = needs.exact_fraction_bits
-        low, high = carried_range(display_list, bits)
-        assert signed_bits([low, high]) == needs.depth_integer_bits(bits) == depth.bit_length() + 1
+        machine = machine_of(display_list, None)
+        assert carried_range(display_list, machine.fraction_bits) == (depth, depth)
+        assert needs.depth_integer_bits(machine) == depth.bit_length()
+        # Where the error may come to a quarter it is told from what is too low.
+        coarse = machine_of(display_list, 5)
+        assert not coarse.stays_in_range
+        error = ceil(bit_true.error_bound(5, needs.extent))
+        assert needs.depth_integer_bits(coarse) == signed_bits([-error, depth + error])
+
+
+def stored_in_words(planes, machine, word_bits, where, high):
+    """What a machine stores of planes that are kept modulo ``2**word_bits``."""
+    place, right, down = where
+    carried = wrap(planes.start[place] + right * planes.step_x[place]
+                   + down * planes.step_y[place], word_bits)
+    if machine.stays_in_range:
+        return (carried >> machine.fraction_bits).astype(np.int64)
+    carried = to_signed(carried, word_bits) >> machine.fraction_bits
+    return np.clip(carried, 0, high).astype(np.int64)
 
 
 @pytest.mark.parametrize("max_error", [0, 1, 50])
@@ -197,21 +228,20 @@ def test_hard_cases_in_planned_words(max_error):
                                   (prepared.upper, prepared.top, prepared.middle),
                                   (prepared.lower, prepared.middle, prepared.bottom)):
             if len(prepared):
-                assert wrong_columns(edges, end - begin, machine.edge_column_bits,
-                                     machine.edge_fraction_bits) == 0, name
+                assert wrong_columns(edges, end - begin, machine) == 0, name
         if listed.width * listed.height > 1 << 16 or listed.triangles > 2000:
             continue
         found = exact.fragments(listed)
         place = np.searchsorted(prepared.primitive, found.primitive)
         where = place, found.x - prepared.left[place], found.y - prepared.top[place]
+        # The words are Python's numbers, a few thousand of them are enough.
+        where = tuple(part[::1 + len(place) // 3000] for part in where)
         for planes, word_bits, high in [
                 (prepared.depth, machine.depth_plane_bits, listed.depth_limit),
                 *((channel, machine.channel_plane_bits, 255) for channel in prepared.color or ())]:
-            narrow = replace(planes, word_bits=word_bits, **{
-                part: getattr(planes, part) % 2**word_bits
-                for part in ("start", "step_x", "step_y")})
-            np.testing.assert_array_equal(bit_true.evaluate(narrow, bits, *where, high),
-                                          bit_true.evaluate(planes, bits, *where, high), name)
+            np.testing.assert_array_equal(
+                stored_in_words(planes, machine, word_bits, where, high),
+                bit_true.evaluate(planes, bits, *where, high), name)
 
 
 LIMITS = {
@@ -247,6 +277,70 @@ def test_one_bit_less_is_refused(name):
         lower = replace(listed, position=position)
         assert scene_needs(lower).edge_remainder_bits == machine.edge_remainder_bits - 1
         assert fitted(narrower, lower) is lower
+
+
+def test_columns_off_the_screen_take_a_sign():
+    """A machine without refuses them; one with draws what is on the screen as well."""
+    inside = triangles([[0, 0], [256, 0], [256, 256]])
+    outside = triangles([[-64, 0], [256, 0], [256, 256]])
+    machines = [plan(listed, cards=CARDS).configuration for listed in (inside, outside)]
+    assert [machine.edges_on_screen for machine in machines] == [True, False]
+    assert [machine.edge_column_bits for machine in machines] == [5, 6]
+    for machine in machines:
+        assert fitted(machine, inside).triangles == 1
+    wide = replace(machines[0], coordinate_bits=0, edge_remainder_bits=0)
+    with pytest.raises(InputError, match="edge_column_bits 6, the machine is built for 5"):
+        fitted(wide, outside)
+    # Beyond the right side as well, whatever fits the columns.
+    right = triangles([[0, 0], [256 + 64, 0], [0, 256]])
+    assert scene_needs(right).edge_column_bits == 6
+
+
+SCREENS = [(16, 16, 1), (16, 16, 4), (13, 9, 3), (9, 23, 8), (1, 1, 1)]
+
+
+def on_screen_list(seed, width, height, sub_bits, count=60):
+    """All vertices on the screen, many of them at its sides and corners, both included."""
+    source = np.random.default_rng(seed)
+    size = np.array([width, height]) << sub_bits
+    position = source.integers(0, size + 1, (count, 3, 2))
+    position = np.where(source.random((count, 3, 2)) < 0.4,
+                        np.where(source.random((count, 3, 2)) < 0.5, 0, size), position)
+    position[0] = [[0, 0], [size[0], 0], [0, size[1]]]
+    position[1] = [size, [size[0], 0], [0, size[1]]]
+    return DisplayList(width, height, position.astype(np.int32),
+                       source.integers(0, (1 << 12) - 1, (count, 3)),
+                       source.integers(0, 256, (count, 3, 3)).astype(np.uint8),
+                       sub_bits=sub_bits, depth_bits=12)
+
+
+@pytest.mark.parametrize(("width", "height", "sub_bits"), SCREENS)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_machine_for_what_is_on_the_screen(seed, width, height, sub_bits):
+    display_list = on_screen_list(seed, width, height, sub_bits)
+    machine = on_screen_machine(cards="PM", width=width, height=height, sub_bits=sub_bits,
+                                depth_bits=12)
+    assert fitted(machine, display_list) is display_list
+    assert machine.edges_on_screen and machine.stays_in_range
+    bits = machine.fraction_bits
+    prepared = prepare(display_list, fraction_bits=bits)
+    for edges, begin, end in ((prepared.long, prepared.top, prepared.bottom),
+                              (prepared.upper, prepared.top, prepared.middle),
+                              (prepared.lower, prepared.middle, prepared.bottom)):
+        assert wrong_columns(edges, end - begin, machine) == 0
+    found = exact.fragments(display_list)
+    place = np.searchsorted(prepared.primitive, found.primitive)
+    where = place, found.x - prepared.left[place], found.y - prepared.top[place]
+    stored = stored_in_words(prepared.depth, machine, machine.depth_plane_bits, where, None)
+    np.testing.assert_array_equal(stored, found.depth)
+    for field in ("coordinate_bits", "edge_column_bits", "edge_remainder_bits",
+                  "edge_fraction_bits"):
+        if (fewer := getattr(machine, field) - 1) == 0:
+            continue
+        narrower = {field: fewer} | ({"edge_fraction_bits": 0}
+                                     if field == "edge_remainder_bits" else {})
+        with pytest.raises(InputError, match=f"display list: {field} "):
+            fitted(replace(machine, **narrower), display_list)
 
 
 @pytest.mark.parametrize(("field", "value"), [("width", 32), ("height", 8), ("depth_bits", 10)])

@@ -9,6 +9,7 @@ from edge_steps import carried_columns, stepped_columns
 from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
 from cardcage.golden.errors import InputError
+from cardcage.golden.fixed import to_signed
 from cardcage.golden.setup import (
     Edges,
     carry_edges,
@@ -17,6 +18,7 @@ from cardcage.golden.setup import (
     edge_column_bits,
     edge_fraction_bits,
     edge_remainder_bits,
+    fewest_edge_fraction_bits,
     prepare,
     scene_fraction_bits,
 )
@@ -225,7 +227,7 @@ def test_carried_edges_are_exact(seed):
                     == stepped_columns(edges, triangle, count, bits))
 
 
-def every_edge(height, column_bits):
+def every_edge(height):
     """All remainders and steps of all denominators up to ``height``, some columns."""
     return Edges(*(np.array(numbers) for numbers in zip(*(
         (column, remainder, column_step, remainder_step, denominator)
@@ -238,7 +240,7 @@ def every_edge(height, column_bits):
 @pytest.mark.parametrize("rows", [1, 2, 3, 7, 8])
 def test_carried_edges_of_small_heights_exhaustively(remainder_bits, rows):
     column_bits = 6
-    edges = every_edge((1 << remainder_bits) - 1, column_bits)
+    edges = every_edge((1 << remainder_bits) - 1)
     enough = edge_fraction_bits(remainder_bits, rows)
     carried = carry_edges(edges, column_bits=column_bits, fraction_bits=enough)
     for index in range(len(edges.column)):
@@ -246,10 +248,56 @@ def test_carried_edges_of_small_heights_exhaustively(remainder_bits, rows):
                 == stepped_columns(edges, index, rows, column_bits))
 
 
+def wrong_columns(edges, rows, fraction_bits):
+    """Of all edges and rows at once; columns of six bits."""
+    carried = carry_edges(edges, column_bits=6, fraction_bits=fraction_bits)
+    row = np.arange(rows)[:, None]
+    columns = to_signed((carried.start + row * carried.step) >> fraction_bits, 6)
+    exact_columns = edges.column + row * edges.column_step + (
+        edges.remainder + row * edges.remainder_step) // edges.denominator
+    return int((columns != to_signed(exact_columns, 6)).sum())
+
+
+HEIGHTS = range(1, 34)
+
+
+@pytest.mark.parametrize("rows", [*range(1, 10), 15, 16, 17, 32, 33])
+def test_the_fewest_fraction_bits_of_an_edge_exhaustively(rows):
+    """Each height alone, all its remainders and steps.  With one bit less some edge of most
+    heights goes wrong; of powers of two on their only row all that are two units high or more."""
+    edges = every_edge(HEIGHTS[-1])
+    too_few = []
+    for height in HEIGHTS:
+        of_height = edges.denominator == height
+        here = Edges(*(part[of_height] for part in vars(edges).values()))
+        bits = fewest_edge_fraction_bits(height, height * rows)
+        assert 1 << bits >= height * rows and 1 << bits > height
+        assert wrong_columns(here, rows, bits) == 0
+        assert wrong_columns(here, rows, bits + 1) == 0
+        if bits and wrong_columns(here, rows, bits - 1):
+            too_few.append(height)
+    assert len(too_few) > len(HEIGHTS) // 2
+    if rows == 1:
+        assert too_few == list(HEIGHTS)
+
+
+@pytest.mark.parametrize("height", [1, 2, 3, 4, 5, 8, 9, 16, 17])
+@pytest.mark.parametrize("rows", [1, 2, 3, 4, 6, 8, 9])
+def test_fraction_bits_for_edges_together(height, rows):
+    """All heights up to one, each followed down as many rows as the greatest product allows."""
+    edges = every_edge(height)
+    for product in range(1, height * rows + 1):
+        bits = fewest_edge_fraction_bits(height, product)
+        for denominator in range(1, min(height, product) + 1):
+            of_height = edges.denominator == denominator
+            here = Edges(*(part[of_height] for part in vars(edges).values()))
+            assert wrong_columns(here, product // denominator, bits) == 0
+
+
 def test_carried_edges_need_their_fraction_bits():
     """With two bits less some edge goes wrong: the width is no luxury."""
     rows, remainder_bits, column_bits = 8, 4, 6
-    edges = every_edge((1 << remainder_bits) - 1, column_bits)
+    edges = every_edge((1 << remainder_bits) - 1)
     fewer = edge_fraction_bits(remainder_bits, rows) - 2
     carried = carry_edges(edges, column_bits=column_bits, fraction_bits=fewer)
     assert any(carried_columns(carried, index, rows, column_bits)
