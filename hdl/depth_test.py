@@ -32,7 +32,7 @@ class DepthTest(wiring.Component):
     -------
     fragments: In(stream of fragment_layout)
     memory: Out(ProcessingElementLines)
-        The write address is 0 while it is not ``busy``.
+        The write address is 0 from a clock after the last ``busy`` one on.
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)

@@ -30,7 +30,7 @@ class TwoPortDepthTest(wiring.Component):
     fragments: In(stream of fragment_layout)
         Always ready.
     memory: Out(ProcessingElementLines)
-        Its busy lines are not looked at.  The write address is 0 while it is not ``busy``.
+        Its busy lines are not looked at.  The write address is 0 from a clock after the last ``busy`` one on.
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)

@@ -88,7 +88,7 @@ def test_what_is_packed_comes_out_of_the_hardware_structure(name, data):
         assert field == number % (1 << bits)
 
 
-@pytest.mark.parametrize(("name", "words"), [("tiny", 22), ("small", 28), ("paper", 34)])
+@pytest.mark.parametrize(("name", "words"), [("tiny", 21), ("small", 27), ("paper", 33)])
 def test_words_of_a_command(name, words):
     configuration = CONFIGURATIONS[name]
     assert commands.command_words(configuration) == words
@@ -125,6 +125,10 @@ def test_triangles_from_set_up(name):
                              shading=configuration.shading)
     words = commands.prepared_triangles(configuration, prepared)
     assert len(words) == len(prepared) > 10
+    # Both kinds of words: without guard bits, and with.
+    assert configuration.stays_in_range == (name == "tiny")
+    narrower = prepared.depth.word_bits - configuration.depth_plane_bits
+    assert narrower == (2 if name == "tiny" else 0)
     assert (prepared.long.column < 0).any()
     structure = layouts.prepared_triangle_layout(configuration)
     for index, word in enumerate(words):
@@ -139,15 +143,18 @@ def test_triangles_from_set_up(name):
                                         fraction_bits=configuration.edge_fraction_bits)
             for field in ("start", "step"):
                 assert fields[edge][field] == getattr(carried, field)[index]
+        # A field that has fewer bits than set-up keeps, for want of a guard, has the low ones.
         for part in ("start", "step_x", "step_y"):
-            assert fields.planes.depth[part] == getattr(prepared.depth, part)[index]
+            assert fields.planes.depth[part] == (
+                getattr(prepared.depth, part)[index] % (1 << configuration.depth_plane_bits))
         for channel, channel_name in enumerate(commands.CHANNELS):
             if configuration.shading == "flat":
                 assert fields.planes[channel_name] == prepared.flat_color[index, channel]
             else:
                 for part in ("start", "step_x", "step_y"):
-                    assert (fields.planes[channel_name][part]
-                            == getattr(prepared.color[channel], part)[index])
+                    assert fields.planes[channel_name][part] == (
+                        getattr(prepared.color[channel], part)[index]
+                        % (1 << configuration.channel_plane_bits))
 
 
 def test_responses():

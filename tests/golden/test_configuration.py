@@ -154,6 +154,15 @@ def test_widths_hold_the_precision_contract():
     assert configuration.edge_remainder_bits == 19
     assert configuration.depth_plane_bits == 24 + 2 + 9
     assert configuration.channel_plane_bits >= 8 + 2 + 9
+    # From 2**F > 2 * 1023 on values stay where they are: no guard, no sign.
+    for fraction_bits, guard in ((10, 2), (11, 0), (40, 0)):
+        finer = replace(configuration, fraction_bits=fraction_bits)
+        assert finer.stays_in_range == (guard == 0)
+        assert finer.depth_plane_bits == 24 + guard + fraction_bits
+        assert finer.channel_plane_bits == 8 + guard + fraction_bits
+    assert not configuration.edges_on_screen
+    assert replace(configuration, edge_column_bits=10).edges_on_screen
+    assert not replace(configuration, edge_column_bits=11).edges_on_screen
 
 
 def test_narrower_words():

@@ -29,25 +29,31 @@ MUTANTS = {
     "a winner written last is remembered too long": (
         "depth_test", "DepthTest", ["processing_element"],
         "m.d.sync += has_written.eq(0)", "pass"),
-    "depth steps one pixel instead of the lattice's stride": (
-        "span_start", "SpanStart", ["processing_element"],
-        "step_x << stride", "step_x"),
+    "depth of the span's first pixel all along": (
+        "fragment_stepper", "FragmentStepper", ["processing_element"],
+        "pixel.x_steps.eq(span.x - span.left)", "pixel.x_steps.eq(span.end - 1 - span.left)"),
     "edges without their fraction": (
         "edge_columns", "EdgeColumns", ["span_walker"],
-        "addends[0])", "(addends[0] >> self.configuration.edge_fraction_bits"
-        " << self.configuration.edge_fraction_bits))"),
+        "first.eq(start + words[0])", "first.eq(start + (words[0]"
+        " >> self.configuration.edge_fraction_bits << self.configuration.edge_fraction_bits))"),
     "the short edge counts rows from the top": (
         "row_walker", "RowWalker", ["span_walker"],
         "Mux(in_upper, triangle.top, triangle.middle)", "triangle.top"),
     "a row skipped at the end": (
         "row_walker", "RowWalker", ["span_walker"],
-        "after_base >= Mux", "after_base + 1 >= Mux"),
+        "after_base >= triangle.bottom", "after_base + 1 >= triangle.bottom"),
+    "one row where there are two": (
+        "broadcast_queue", "BroadcastQueue", ["processing_element"],
+        "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
     "a span ends a pixel late": (
         "span_clip", "SpanClip", ["span_walker"],
-        "(end - 1 - x)", "(end - x)"),
+        "end.eq(extent.beyond)", "end.eq(extent.beyond + 1)"),
     "row step added twice": (
-        "span_start", "SpanStart", ["processing_element"],
-        'addends.append(start)', 'addends += [start, addends[-1]]'),
+        "interpolator", "Interpolator", ["processing_element"],
+        "delayed(m, x + y, 1,", "delayed(m, x + y + y, 1,"),
+    "odd limbs left out": (
+        "interpolator", "Interpolator", ["processing_element"],
+        "sum(words[1:], words[0])", "words[0]"),
     "a triangle kept from the element that has its last column": (
         "broadcast_queue", "BroadcastQueue", ["processing_element"],
         "< triangle.right", "< triangle.right - 1"),
@@ -73,7 +79,7 @@ MUTANTS = {
         "Mux(pictures.front, access.color[0], access.color[1])"),
     "survey takes silence for an answer": (
         "survey", "Survey", ["processing_element"],
-        "memory.read_data != pattern", "memory.read_data == pattern"),
+        "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
         "tag_sweep", "TagSweep", ["memory_unit"],
         "self.erase.eq(left)", "self.erase.eq(Mux(everything, 0, left))"),
@@ -96,9 +102,15 @@ MUTANTS = {
     "a frame starts before all are done": (
         "central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "when=quiet & self.tags.ready", "when=self.tags.ready"),
+    "with two ports the winner a clock ahead is not seen": (
+        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "Mux(follows & winning, write.depth, stored)", "stored"),
+    "with two ports the winner two clocks ahead is not seen": (
+        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "Mux(writing, write.depth, ", "Mux(0, write.depth, "),
     "with two ports a read beside a write sees the old word": (
-        "two_port_memory", "TwoPortMemory", ["memory_unit"],
-        "Mux(met, written, answers[0])", "answers[0]"),
+        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "Mux(wrote, written.depth, ", "Mux(0, written.depth, "),
     "pictures are never swapped": (
         "central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "front.eq(~pictures.front)", "front.eq(pictures.front)"),
@@ -107,7 +119,7 @@ MUTANTS = {
         "self.broadcast.done & (settle == 0)", "settle == 0"),
     "columns step one pixel instead of the lattice's stride": (
         "fragment_stepper", "FragmentStepper", ["processing_element"],
-        "span.x + (1 << span.x_stride_bits)", "span.x + 1"),
+        "span.x + span.stride", "span.x + 1"),
 }
 
 
@@ -132,7 +144,7 @@ MUTANTS_IN_SQUARES = {
         "interlace", "ScanAddress", ["memory_unit"],
         "self.x[:group_bits] == 0", "self.x[:group_bits + 1] == 0"),
     "addresses leave out a bit inside the square": (
-        "interlace", "PixelAddress", ["fragment_stepper"],
+        "interlace", "PixelAddress", ["interpolator"],
         '_without(self.x, interlace.unit_mask("x"))', "self.x >> 1"),
 }
 
@@ -203,7 +215,7 @@ def test_mutant_in_squares_is_caught(monkeypatch, name):
 #: The same in a skewed machine of one unit each.
 MUTANTS_SKEWED = {
     "a unit number without the bit of x": (
-        "interlace", "PixelAddress", ["fragment_stepper"],
+        "interlace", "PixelAddress", ["interpolator"],
         "number[0] ^= x[interlace.skew_bit]", "pass"),
     "rows that are not shifted": (
         "lattice", "row_offset", ["span_clip"],

@@ -10,8 +10,8 @@ class MemoryLines(Agent):
 
     A unit's one port goes to the scan, else to the write, else to the read.  The
     scan takes each unit's port with probability ``scan``, drawn anew every
-    clock.  With two ports nobody waits, and a read sees the write of its own
-    clock.  Contents start out random.
+    clock.  With two ports nobody waits, and what a read sees of the write of its own
+    clock is drawn anew.  Contents start out random.
 
     ``depth``, ``back``   dicts (unit, address) → word
     ``reads``, ``writes`` lists of (clock, unit, address)
@@ -57,8 +57,10 @@ class MemoryLines(Agent):
     def sample(self, ctx):
         read, write = ctx.get(self._lines.read), ctx.get(self._lines.write)
         self._answer = 0
+        met = False  # with two ports only
         if write.valid and not self._write_busy:
             place = write.unit, write.address
+            met = read.valid and not self._read_busy and place == (read.unit, read.address)
             self.writes.append((self._clock, *place))
             if place[0] in self._units:
                 assert place in self.depth, f"clock {self._clock}: writes {place}"
@@ -68,5 +70,6 @@ class MemoryLines(Agent):
             self.reads.append((self._clock, *place))
             if place[0] in self._units:
                 assert place in self.depth, f"clock {self._clock}: reads {place}"
-                self._answer = self.depth[place]
+                self._answer = (self._source.randint(0, self._background) if met
+                                else self.depth[place])
         self._clock += 1
