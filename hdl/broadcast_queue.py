@@ -32,7 +32,8 @@ class BroadcastQueue(wiring.Component):
     until it is gone, so it comes after the triangles before it and before those
     after it; and what looks after such operations is not in the triangles' way.
 
-    Latency: ``latency`` clocks; ``operation_latency`` for what finds the queue empty.  Throughput: a triangle a clock.
+    Latency: ``latency`` clocks; ``operation_latency`` for what finds the queue empty.
+    Throughput: a triangle a clock.
 
     Members
     -------

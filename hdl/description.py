@@ -18,9 +18,10 @@ __all__ = ["component_for", "describe"]
 
 #: The four boards and what of them states figures.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator", "span_walker", "fragment_stepper", "interpolator", "depth_test",
-          "read_back", "response_link", "survey", "frame_tags", "tag_sweep")
-_TIMED_MEMORY = {1: "one_port_memory", 2: "two_port_memory"}  # by its ports
+          "video_scan_generator", "span_walker", "fragment_stepper", "interpolator", "read_back",
+          "response_link", "survey", "frame_tags", "tag_sweep")
+_TIMED_BY_PORTS = {1: ("depth_test", "one_port_memory"),
+                   2: ("two_port_depth_test", "two_port_memory")}
 
 
 def _inspected(component: wiring.Component, facts):
@@ -43,7 +44,7 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
     """
     top = name or "machine"
     modules = _modules(verilog)
-    timed = (name,) if name else (*_TIMED, _TIMED_MEMORY[configuration.memory_ports])
+    timed = (name,) if name else (*_TIMED, *_TIMED_BY_PORTS[configuration.memory_ports])
     if name is None and configuration.setup == "hardware":
         timed += ("triangle_setup",)
     return {
@@ -102,8 +103,8 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
         number("column", c.x_bits, "pixel column, and one past the last"),
         number("row", c.y_bits, "pixel row, and one past the last"),
         number("edge", c.edge_word_bits, signed=not c.edges_on_screen,
-               fraction_bits=c.edge_fraction_bits, meaning="first pixel column not left of an edge, exact on each of its rows; sums "
-               "wrap, the column on a row does not"),
+               fraction_bits=c.edge_fraction_bits, meaning="first pixel column not left of an "
+               "edge, exact on each of its rows; sums wrap, the column on a row does not"),
         number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
         number("tag", c.tag_bits, "tag of a frame, beside each depth and colour; 0 is none's"),
         number("depth_plane", c.depth_plane_bits, signed=signed, fraction_bits=fraction,

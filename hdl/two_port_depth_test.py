@@ -30,7 +30,8 @@ class TwoPortDepthTest(wiring.Component):
     fragments: In(stream of fragment_layout)
         Always ready.
     memory: Out(ProcessingElementLines)
-        Its busy lines are not looked at.  The write address is 0 from a clock after the last ``busy`` one on.
+        Its busy lines are not looked at.  The write address is 0 from a clock after the last
+        ``busy`` one on.
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)
@@ -42,7 +43,7 @@ class TwoPortDepthTest(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
-            "fragments": In(stream.Signature(fragment_layout(configuration), always_ready=True)),
+            "fragments": In(stream.Signature(fragment_layout(configuration))),
             "memory": Out(ProcessingElementLines(configuration)),
             "busy": Out(1),
             "forwarded": Out(1),
@@ -62,6 +63,7 @@ class TwoPortDepthTest(wiring.Component):
         follows = Signal()  # compare's pixel is that of the fragment a clock ahead
 
         m.d.comb += [
+            self.fragments.ready.eq(1),
             memory.read.valid.eq(self.fragments.valid),
             memory.read.unit.eq(fragment.unit),
             memory.read.address.eq(fragment.address),

@@ -58,16 +58,23 @@ module {name}(
   input [{lane_top}:0] write_enable,
   input [{data_top}:0] write_data,
   input [{address_top}:0] read_address,
-  input read_enable,
-  output reg [{data_top}:0] read_data
+{read_ports}
 );
   {attribute}reg [{data_top}:0] words [0:{last}];
   always @(posedge clk) begin
 {writes}
-    if (read_enable) read_data <= words[read_address];
-  end
+{read}
 endmodule
 """
+
+#: Of block RAM, whose read is clocked, and of the small RAM of look-up tables, whose read is not:
+#: what ends a module's name, its ports, and its read.
+_READS = {
+    "sync": ("", "  input read_enable,\n  output reg [{data_top}:0] read_data",
+             "    if (read_enable) read_data <= words[read_address];\n  end"),
+    "comb": ("_asynchronous_read", "  output [{data_top}:0] read_data",
+             "  end\n  assign read_data = words[read_address];"),
+}
 
 
 class _VerilogPlatform:
@@ -84,9 +91,10 @@ class _VerilogPlatform:
 
     def get_memory(self, ram: memory.Memory) -> Elaboratable:
         [write], [read] = ram.write_ports, ram.read_ports
-        assert read.domain == write.domain == "sync" and not read.transparent_for
+        assert write.domain == "sync" and not read.transparent_for
+        ending, read_ports, read_text = _READS[read.domain]
         width, lanes = Shape.cast(ram.shape).width, len(write.en)
-        name = f"memory_{ram.depth}x{width}" + (f"_lanes_{lanes}" if lanes > 1 else "")
+        name = f"memory_{ram.depth}x{width}" + (f"_lanes_{lanes}" if lanes > 1 else "") + ending
         unchecked = "no_rw_check" in ram.attrs
         name += "_no_rw_check" * unchecked
         address_width = max(1, len(write.addr))
@@ -95,17 +103,19 @@ class _VerilogPlatform:
             name=name, depth=ram.depth, width=width, last=ram.depth - 1,
             attribute="(* no_rw_check *) " * unchecked,
             address_top=address_width - 1, lane_top=lanes - 1, data_top=width - 1,
+            read_ports=read_ports.format(data_top=width - 1), read=read_text,
             writes="\n".join(
                 f"    if (write_enable[{index}]) words[write_address]"
                 f"[{index * lane + lane - 1}:{index * lane}] <= "
                 f"write_data[{index * lane + lane - 1}:{index * lane}];"
                 for index in range(lanes)))
+        enable = {"i_read_enable": read.en} if read.domain == "sync" else {}
         m = Module()
         m.submodules.ram = Instance(
             name, i_clk=ClockSignal(),
             i_write_address=_padded(write.addr, address_width), i_write_enable=write.en,
             i_write_data=Value.cast(write.data),
-            i_read_address=_padded(read.addr, address_width), i_read_enable=read.en,
+            i_read_address=_padded(read.addr, address_width), **enable,
             o_read_data=Value.cast(read.data))
         return m
 
