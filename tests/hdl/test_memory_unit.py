@@ -25,7 +25,8 @@ class Card(Agent):
 
     Each clock is checked against what the card owes: its one port goes to a scan
     fetch announced in the clock before, else to a write, else to a read; of two
-    ports each has its share.  Memory is random to begin with, then initialised.
+    ports each has its share, and what is read of a word in the clock of its write
+    is unknown.  Memory is random to begin with, then initialised.
     Frames start with tags that no word has, as far as can be known from outside.
     """
 
@@ -40,7 +41,6 @@ class Card(Agent):
         # What is seen of each lane; None is background.
         self.depth, self.color = [None] * WORDS, [[None] * WORDS, [None] * WORDS]
         self.front = 0
-        self.background = 0x123456
         self.tags = [1, 1, 1]  # current ones: depth, colours
         self.held = [set(), set(), set()]  # those that some word may have besides
         self.since = None  # the same, of a pass that goes on
@@ -49,18 +49,18 @@ class Card(Agent):
         self.fetches = deque([EMPTY] * 3, maxlen=3)  # of the last three clocks, oldest first
         self.scan_address = None  # whose slot this clock is
         self.captures = deque([None, None], maxlen=2)  # what becomes of the scan reads
-        self.output = 0
-        self.answer = 0
+        self.output = (0, 0)  # whether it has been drawn, and its colour if so
+        self.answer = 0  # depth, None where it is unknown
         self.idle = True
         self.clock = 0
         self.counts = dict.fromkeys(("scan", "write", "read", "write_busy", "read_busy", "shown",
-                                     "swaps", "numbers", "answers", "frames", "passes", "met"),
-                                    0)
+                                     "background", "swaps", "numbers", "answers", "frames",
+                                     "passes", "met"), 0)
 
     # What goes in
 
     def scan_addresses(self):
-        """Pixel after pixel, line after line, now and then a jump to the start of a line."""
+        """Pixel after pixel, line after line, now and then a pause and a jump to another line."""
         while True:
             start = self.pick.randrange(CONFIGURATION.height)
             for y in range(start, CONFIGURATION.height):
@@ -69,9 +69,10 @@ class Card(Agent):
                     for _ in range(self.period - 1):
                         yield {"valid": 0, "x": x, "y": y}
                     if self.gaps and self.pick.random() < self.gaps:
-                        yield from ({"valid": 0, "x": x, "y": y} for _ in range(4))
+                        yield from [{"valid": 0, "x": x, "y": y}] * 4
                 if self.pick.random() < 0.3:
                     break
+            yield from [EMPTY] * 8
 
     def interlace(self):
         return interlace_for(CONFIGURATION.width, CONFIGURATION.height,
@@ -104,7 +105,6 @@ class Card(Agent):
             self.counts["frames"] += 1
         if quiet and pick.random() < 0.2:
             self.front ^= 1
-            self.background = pick.getrandbits(24)
             self.counts["swaps"] += 1
         sweep = self.since is None and swept and self.booted and pick.random() < 0.1
         if sweep:
@@ -112,7 +112,6 @@ class Card(Agent):
         ctx.set(lines.sweep, sweep)
         ctx.set(lines.initialise, self.clock == 0)
         ctx.set(lines.front, self.front)
-        ctx.set(lines.background, self.background)
         ctx.set(lines.depth_tag, self.tags[0])
         for line, tag in zip(lines.color_tag, self.tags[1:], strict=True):
             ctx.set(line, tag)
@@ -170,8 +169,12 @@ class Card(Agent):
         read_busy = one and reading and (scanning or writing)
         assert ctx.get(lines.write_busy) == (write_busy or self.onward["write_busy"])
         assert ctx.get(lines.read_busy) == (read_busy or self.onward["read_busy"])
-        assert ctx.get(lines.read_data) == self.answer | self.onward["read_data"]
-        counts["answers"] += self.answer != 0
+        read_data, others = ctx.get(lines.read_data), self.onward["read_data"]
+        if self.answer is None:
+            assert read_data & others == others
+        else:
+            assert read_data == self.answer | others
+            counts["answers"] += self.answer != 0
         counts["write_busy"] += write_busy
         counts["read_busy"] += read_busy
 
@@ -182,8 +185,10 @@ class Card(Agent):
         interlace = self.interlace()
         x, y = self.show["x"] >> interlace.x_shift, self.show["y"] >> interlace.y_shift
         mine = interlace.unit(x, y) == self.id
-        assert ctx.get(dut.scan.video) == (self.output if mine else 0)
-        counts["shown"] += mine and self.output != 0
+        drawn, color = self.output if mine else (0, 0)
+        assert (ctx.get(dut.scan.drawn), ctx.get(dut.scan.video)) == (drawn, color)
+        counts["shown"] += drawn
+        counts["background"] += mine and not drawn
 
         self.idle = not reading
         self.step(scanning, writing and not write_busy, reading and not read_busy)
@@ -194,7 +199,7 @@ class Card(Agent):
         if scanning:
             self.counts["scan"] += 1
             color = self.color[self.front][self.scan_address]
-            capture = self.background if color is None else color
+            capture = (0, 0) if color is None else (1, color)
         if writing:
             self.counts["write"] += 1
             address = self.write["address"]
@@ -204,7 +209,9 @@ class Card(Agent):
             self.counts["read"] += 1
             depth = self.depth[self.read["address"]]
             self.answer = BACKGROUND if depth is None else depth
-            self.counts["met"] += writing and self.read["address"] == address
+            if writing and self.read["address"] == address:
+                self.answer = None
+                self.counts["met"] += 1
         self.captures.append(capture)
         self.scan_address = self.due()
         self.fetches.append(self.fetch)
@@ -226,7 +233,7 @@ class Card(Agent):
 @pytest.mark.parametrize(("seed", "arguments"), [
     (0, {}), (1, {"renumber": 0.03}), (2, {"renumber": 0.03, "gaps": 0.2, "period": 3}),
     (3, {"gaps": 0.3, "traffic": 0.9}), (4, {"traffic": 0.2, "gaps": 0.3}),
-    (5, {"period": 1, "renumber": 0.01})], ids=str)
+    (5, {"period": 1, "renumber": 0.02})], ids=str)
 def test_a_slot_at_random(seed, arguments, ports):
     dut = MemoryUnit(configuration=CONFIGURATIONS[ports])
     card = Card(dut, seed, 1000, **arguments)
@@ -236,7 +243,7 @@ def test_a_slot_at_random(seed, arguments, ports):
         if name == "numbers":
             assert count > 5 or not arguments.get("renumber")
         elif name == "swaps":
-            assert count > 5 or not arguments.get("gaps")
+            assert count > 5
         elif name.endswith("busy") and ports == 2:
             assert count == 0
         elif name == "met":

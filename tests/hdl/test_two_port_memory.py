@@ -1,4 +1,4 @@
-"""The RAMs with two ports against an array, whatever they read in the clock of a write."""
+"""The RAMs with two ports against an array, whatever a word reads as in the clock of its write."""
 
 import pytest
 from hdl_bench.accesses import Accesses, careless_memory
