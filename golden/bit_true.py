@@ -2,7 +2,8 @@
 
 Coverage is exact at any precision.  Depth and colour are what ``setup``
 computes and a machine carries: start and increments rounded at 2**-F, summed
-modulo a power of two, floored, read as signed, saturated.  With enough
+modulo a power of two, floored, read as signed, saturated; where errors are
+small (``fixed.stays_in_range``) the last two change nothing.  With enough
 fraction bits (``setup.scene_fraction_bits``) the picture equals ``exact``'s;
 with fewer, depth and colour err by at most ``error_bound`` before the floor.
 """

@@ -1,4 +1,4 @@
-"""The words between the host and the central broadcast controller, version 2.
+"""The words between the host and the central broadcast controller, version 3.
 
 One place for the layout: the hardware builds its structures from these tables,
 the host packs its words with them, and ``docs/command-words.md`` describes them.
@@ -19,7 +19,7 @@ from .configuration import CHANNEL_BITS, MachineConfiguration
 from .display_list import DisplayList
 from .setup import PreparedTriangles, carry_edges
 
-VERSION = 2
+VERSION = 3
 OPCODE_BITS = 4
 BODY_OFFSET = 8
 WORD_BITS = 32

@@ -14,7 +14,8 @@ Widths at which every triangle fits, b the display list's coordinate bits, s its
     colour word      ``color_word_bits``       8 + guard + fraction bits
 
 The guard is for the highest resolution, at whatever resolution the machine draws.  A machine
-for one scene may have narrower words (``scene_needs``): it keeps the low bits of these.
+that needs none (``fixed.stays_in_range``), or is for one scene (``scene_needs``), has narrower
+words: it keeps the low bits of these.
 """
 
 from __future__ import annotations
