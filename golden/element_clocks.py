@@ -38,8 +38,8 @@ class Pipeline:
     queue: int = 3
     latency: int = 15
     found: int = 8
-    spans_ahead: int = 17
-    lead: int = 9
+    spans_ahead: int = 16
+    lead: int = 5
     valued: int = 6
     first_row: int = 2
     block: int = 3

@@ -27,7 +27,6 @@ from ..hdl.interpolator import Interpolator
 from ..hdl.layouts import planes_layout, span_layout
 from .remainder_interpolator import PipelinedRemainderInterpolator, RemainderInterpolator
 
-
 _SPAN_FIELDS = ("x", "end", "left", "y_steps", "stride")
 
 

@@ -14,7 +14,9 @@ from PIL import Image
 from cardcage.golden.configuration import configure
 from cardcage.golden.cycle_model import predict_cycles
 from cardcage.golden.display_list import DisplayList
+from cardcage.golden.errors import InputError
 from cardcage.golden.exact import depth_complexity, draw
+from cardcage.golden.scene_needs import fitted
 from cardcage.testbenches.bench_cases import (
     DEFAULT_CASES,
     LEAST_TRIANGLES,
@@ -25,6 +27,7 @@ from cardcage.testbenches.bench_cases import (
     case_names,
     peers,
 )
+from cardcage.testbenches.bench_machines import ALL_MACHINES, bench_machines
 from cardcage.testbenches.bench_run import DifferentError, measure
 from cardcage.testbenches.cli import main
 from cardcage.testbenches.command_group import EXIT_DIFFERENT
@@ -77,6 +80,23 @@ def test_fragments_are_those_that_the_peers_drew():
     by_name = {peer.short: peer for peer in peers()}
     assert by_name["RasterIX"].cycles_per_triangle["one_pixel"] == 12
     assert by_name["natanbc"].depth_error_lsb == [240, 702]
+
+
+@pytest.mark.parametrize("name", case_names())
+def test_the_machines_are_for_the_screen_and_fit_every_case(name):
+    """So does a triangle that ends on the screen's right and lower side; none beyond does."""
+    machine = bench_machines(replace(ALL_MACHINES, elements=(1,)))[0].configuration
+    assert machine.edges_on_screen and machine.stays_in_range
+    for order in ORDERS:
+        lists = case_lists(name, order)
+        for listed in (lists.once, lists.twice):
+            assert fitted(machine, listed) is listed
+    once, end = lists.once, 512 << 8
+    corners = np.array([[[0, 0], [end, 0], [0, end]], [[end, end], [end, 0], [0, end]]], np.int32)
+    whole = replace(once, position=corners, depth=once.depth[:2], color=once.color[:2])
+    assert fitted(machine, whole) is whole
+    with pytest.raises(InputError, match="the machine is built for"):
+        fitted(machine, replace(whole, position=corners + 256))
 
 
 def test_the_mesh_lies_in_three_layers():

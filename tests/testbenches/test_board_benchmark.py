@@ -114,6 +114,7 @@ def test_machines_are_exact_for_every_triangle(placed):
         assert (machine.width, machine.height, machine.cards) == (512, 512, "PMM")
         assert (machine.sub_bits, machine.depth_bits, machine.fifo_depth) == (8, 24, 16)
         assert machine.fraction_bits == exact_fraction_bits(512 * 512 << 16, 1022)
+        assert machine.edges_on_screen and machine.stays_in_range
         assert not machine.observe
     assert [name for name, machine in machines.items() if machine.memory_ports == 1] == [
         "unit-1-port"]
