@@ -1,9 +1,8 @@
-"""Operations in their order: triangles flow on, everything else waits for an empty datapath."""
+"""Operations in their order, each when the datapath is empty."""
 
 import random
 
 import pytest
-from amaranth.hdl import Value
 from hdl_bench.bench import Agent, Watch, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
@@ -17,16 +16,21 @@ SERVICES = {"survey": "surveying", "read_back": "reading"}
 FIRST, END, FRAGMENTS, BUSY = 1, 4, 0x89ABCDEF, 0x01234567
 DEPTHS = [17, 0, 255, 128, 3]
 UNKNOWN = 7
+#: A triangle is none: it does not pass through here.
+OPERATIONS = [kind for kind in Operation if kind != Operation.DRAW]
 
 
 class Datapath(Agent):
-    """Takes triangles, and holds each for a while after."""
+    """Draws for ``hold()`` clocks, from the beginning and anew behind each operation.
 
-    def __init__(self, dut, triangles, hold):
+    So operations come while it draws, and it draws when none is there.
+    """
+
+    def __init__(self, dut, source, hold):
         self.dut = dut
-        self.triangles = triangles  # the sink behind the port
+        self.source = source
         self.hold = hold
-        self.left = 0
+        self.left = hold()
         self.seen = 0
         self.drawing = []
 
@@ -35,9 +39,9 @@ class Datapath(Agent):
         return self.left == 0
 
     def drive(self, ctx):
-        if len(self.triangles.items) > self.seen:
-            self.seen = len(self.triangles.items)
-            self.left = max(self.left, self.hold())
+        if len(self.source.taken) > self.seen:
+            self.seen = len(self.source.taken)
+            self.left = self.hold()
         ctx.set(self.dut.drawing, self.left > 0)
         self.drawing.append(self.left > 0)
         self.left = max(0, self.left - 1)
@@ -86,19 +90,6 @@ class Parts(Agent):
         self.clock += 1
 
 
-def operation(kind, marker=0):
-    return {"operation": kind, "triangle": {"top": marker % 8, "left": marker // 8 % 8}}
-
-
-def word(dut, kind, marker=0):
-    """The packet as an integer, whatever the operation: also one that has no name."""
-    layout = dut.operations.payload.shape()
-    number = layout.const(operation(Operation.DRAW, marker)).as_bits()
-    field = layout["operation"]
-    mask = (1 << 3) - 1 << field.offset
-    return number & ~mask | getattr(kind, "value", kind) << field.offset
-
-
 RESPONSES = {
     Operation.SURVEY: [(ResponseKind.DOMAIN, FIRST << 16 | END - FIRST)],
     Operation.READ_DEPTH: [(ResponseKind.DEPTH, depth) for depth in DEPTHS],
@@ -107,15 +98,13 @@ RESPONSES = {
 STARTS = {Operation.SURVEY: "survey", Operation.READ_DEPTH: "read_back"}
 
 
-def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
+def run(kinds, *, pause=(no_pause,) * 2, hold=lambda: 0, time=lambda: 2):
     dut = ProcessingElementControl(configuration=CONFIGURATION)
-    words = [word(dut, kind, marker) for marker, kind in enumerate(kinds)]
-    draws = [number for number, kind in zip(words, kinds, strict=True) if kind == Operation.DRAW]
     answers = [answer for kind in kinds for answer in RESPONSES.get(kind, ())]
-    source = Source(dut.operations, words, pause[0])
-    triangles = Sink(dut.triangles, len(draws), pause[1])
-    responses = Sink(dut.responses, len(answers), pause[2])
-    datapath, parts = Datapath(dut, triangles, hold), Parts(dut, time)
+    # As numbers: also one that has no name.
+    source = Source(dut.operations, [getattr(kind, "value", kind) for kind in kinds], pause[0])
+    responses = Sink(dut.responses, len(answers), pause[1])
+    datapath, parts = Datapath(dut, source, hold), Parts(dut, time)
     frame_starts = []
 
     def watch(ctx, clock):
@@ -124,66 +113,66 @@ def run(kinds, *, pause=(no_pause,) * 3, hold=lambda: 3, time=lambda: 2):
             ctx.set(getattr(dut, name), value)
         drawing = datapath.drawing[clock]
         waiting = ctx.get(dut.operations.valid)
-        if parts.running is None and not drawing and not waiting:
-            assert ctx.get(dut.idle)
-        if drawing or waiting or parts.running:
-            assert not ctx.get(dut.idle)
-        assert ctx.get(dut.working) == bool(drawing or ctx.get(dut.triangles.valid))
+        assert ctx.get(dut.idle) == (not drawing and not waiting)
+        assert waiting or not parts.running
+        if drawing:
+            assert not ctx.get(dut.operations.ready)
         if ctx.get(dut.frame_start):
-            assert not drawing
             frame_starts.append(clock)
 
     # The watch looks before the parts move on.
-    simulate(dut, Watch(watch), source, triangles, responses, datapath, parts, after=8)
+    simulate(dut, Watch(watch), source, responses, datapath, parts, after=8)
     assert [(item.kind, item.value) for item in responses.items] == answers
-    layout = dut.operations.payload.shape()
-    body = layout["triangle"].offset
-    size = len(Value.cast(dut.triangles.payload))
-    assert [item.as_bits() for item in triangles.items] == [
-        number >> body & (1 << size) - 1 for number in draws]
     assert [name for _, name in parts.log] == [STARTS[kind] for kind in kinds if kind in STARTS]
     for clock, _ in parts.log:
         assert not datapath.drawing[clock]
     assert frame_starts == [clock for clock, kind in zip(source.taken, kinds, strict=True)
                             if kind == Operation.FRAME_START]
-    return source, triangles, responses, datapath, parts
+    return source, responses, datapath, parts
+
+
+def empty_after(datapath):
+    """The first clock after the drawing."""
+    return 1 + max(clock for clock, drawing in enumerate(datapath.drawing) if drawing)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_random_operations(seed):
     pick = random.Random(f"operations {seed}")
-    kinds = [pick.choice([*Operation, Operation.DRAW, Operation.DRAW, Operation.DRAW, UNKNOWN])
-             for _ in range(40)]
-    run(kinds, pause=[pauses(f"{end} {seed}") for end in range(3)],
-        hold=lambda: pick.randrange(1, 9), time=lambda: pick.randrange(6))
-
-
-def test_triangles_pass_in_the_same_clock():
-    source, triangles, *_ = run([Operation.DRAW] * 10)
-    assert source.taken == triangles.clocks == list(range(10))
+    kinds = [pick.choice([*OPERATIONS, UNKNOWN]) for _ in range(40)]
+    _, _, datapath, parts = run(kinds, pause=[pauses(f"{end} {seed}") for end in range(2)],
+                                hold=lambda: pick.randrange(9), time=lambda: pick.randrange(6))
+    assert len(parts.log) > 8 and sum(datapath.drawing) > 50
 
 
 @pytest.mark.parametrize("kind", STARTS)
-def test_others_begin_when_the_datapath_is_empty(kind):
-    *_, datapath, parts = run([Operation.DRAW, kind], hold=lambda: 5)
-    empty = 1 + max(clock for clock, drawing in enumerate(datapath.drawing) if drawing)
+@pytest.mark.parametrize("hold", [0, 5])
+def test_services_begin_when_the_datapath_is_empty(kind, hold):
+    *_, datapath, parts = run([kind], hold=iter((hold, 0)).__next__)
     # Started in the first clock without a triangle; the lines are the service's from the next on.
-    assert parts.log == [(empty, STARTS[kind])]
+    assert parts.log == [(empty_after(datapath) if hold else 0, STARTS[kind])]
 
 
 def test_a_frame_start_takes_a_clock():
-    source, *_ = run([Operation.FRAME_START, Operation.DRAW])
-    assert source.taken == [0, 1]
+    source, *_ = run([Operation.FRAME_START] * 10)
+    assert source.taken == list(range(10))
+
+
+@pytest.mark.parametrize("hold", [1, 5])
+def test_a_frame_starts_when_the_datapath_is_empty(hold):
+    source, _, datapath, _ = run([Operation.FRAME_START], hold=iter((hold, 0)).__next__)
+    assert source.taken == [empty_after(datapath)]
 
 
 def test_counters_follow_when_the_datapath_is_empty():
-    _, _, responses, datapath, _ = run([Operation.DRAW, Operation.READ_COUNTERS], hold=lambda: 5)
-    empty = 1 + max(clock for clock, drawing in enumerate(datapath.drawing) if drawing)
+    source, responses, datapath, _ = run([Operation.READ_COUNTERS], hold=iter((5, 0)).__next__)
+    empty = empty_after(datapath)
     assert responses.clocks == [empty + 1, empty + 2]
+    assert source.taken == [empty + 2]
 
 
 @pytest.mark.parametrize("kind", [0, 6, 7])
 def test_operations_of_a_newer_controller_are_passed_over(kind):
     source, *_ = run([kind, Operation.SURVEY, kind, kind])
     assert source.taken[0] == 0
-    assert len(source.taken) == 4
+    assert source.taken[1:] == [source.taken[1] + clock for clock in range(3)]

@@ -7,10 +7,12 @@ from hdl_bench.pictures import small_machine
 from cardcage.golden.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
 from cardcage.hdl.video_scan_generator import VideoScanGenerator
 
+BACKGROUND = 0x123456
+
 
 def color_at(x, y):
-    """A colour for every scan address, never black."""
-    return 0x800001 | x << 8 | (y & 0x7F) << 16
+    """What is drawn at a scan address, never black; None where nothing is."""
+    return None if (x + y) % 3 == 1 else 0x800001 | x << 8 | (y & 0x7F) << 16
 
 
 class Screen(Agent):
@@ -24,9 +26,13 @@ class Screen(Agent):
         self.start, self.fetch, self.show, self.pins = [], [], [], []
 
     def drive(self, ctx):
-        show = ctx.get(self.dut.scan.show)
+        scan = self.dut.scan
+        show = ctx.get(scan.show)
         # Outside the picture the bus may carry anything: nothing of it may get out.
-        ctx.set(self.dut.scan.video, color_at(show.x, show.y))
+        color = color_at(show.x, show.y)
+        ctx.set(scan.drawn, color is not None)
+        ctx.set(scan.video, color or 0)
+        ctx.set(self.dut.background, BACKGROUND)
 
     def sample(self, ctx):
         dut = self.dut
@@ -75,6 +81,7 @@ TIMINGS = {
 @pytest.mark.parametrize("name", TIMINGS)
 def test_two_scans_pin_by_pin(name):
     timing, period = TIMINGS[name]
+    kinds = set()  # of the colours shown: background or not
     line = timing.horizontal_total * period
     whole = line * timing.vertical_total
     latency = VideoScanGenerator.latency
@@ -113,8 +120,14 @@ def test_two_scans_pin_by_pin(name):
                 assert later | {"pixel": 1} == pin
             assert pin["active"] == shown[column]
             y = number % timing.vertical_total - timing.vertical_sync - timing.vertical_back
-            color = color_at(column - left, y) if shown[column] else 0
+            color = 0
+            if shown[column]:
+                color = color_at(column - left, y)
+                color = BACKGROUND if color is None else color
+                kinds.add(color == BACKGROUND)
             assert pin["red"] | pin["green"] << 8 | pin["blue"] << 16 == color
+
+    assert kinds == ({False} if name == "one pixel" else {False, True})
 
     # The scan lines: one announcement a pixel, three clocks later on the bus, four on the pins.
     bus = VideoScanGenerator.bus_latency
