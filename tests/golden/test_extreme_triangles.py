@@ -281,3 +281,44 @@ def test_width_of_carried_words(interpolant, fraction_bits):
     at = [np.array([number]) for number in (0, 510, 511)]
     assert bit_true.evaluate(planes, fraction_bits, *at, limit).tolist() == [limit]
     assert bit_true.evaluate(narrow, fraction_bits, *at, limit).tolist() != [limit]
+
+
+@pytest.mark.parametrize("size", [64, 512])
+def test_words_without_guard_or_sign_hold_extreme_triangles(size):
+    """At the least fraction bits that stay in range, unsigned and not saturated: over corners of
+    the guard band, random, and level at both ends of the range; a sample of all pixels."""
+    fraction_bits = next(bits for bits in range(65) if fixed.stays_in_range(bits, 2 * size - 2))
+    limit = 1 << (coordinate_bits(size, size, 8) - 1)
+    random = np.random.default_rng(size)
+    screen = size << 8
+    position = np.concatenate([
+        [[[-limit, -limit], [limit - 1, -limit], [-limit, limit - 1]],
+         [[limit - 1, limit - 1], [limit - 1, -limit], [-limit, limit - 1]],
+         [[0, 0], [screen, 1], [screen - 1, screen]]],
+        random.integers(-limit, limit, (8, 3, 2)), random.integers(0, screen + 1, (12, 3, 2))])
+    ends = random.choice([0, 1, FARTHEST - 1, FARTHEST], (len(position), 3))
+    ends[::5] = ends[::5, :1]
+    checked = off = 0
+    for corners, depth in zip(position, ends, strict=True):
+        display_list = listed(corners, depth, size, depth_bits=32)
+        found = exact.fragments(display_list)
+        if not len(found):
+            continue
+        prepared = prepare(display_list, fraction_bits=fraction_bits)
+        chosen = slice(None, None, 1 + len(found) // 2000)
+        right, down = found.x[chosen] - prepared.left[0], found.y[chosen] - prepared.top[0]
+        values = [(prepared.depth, depth, 32, FARTHEST), *(
+            (planes, display_list.color[0, :, channel].astype(np.int64), 8, 255)
+            for channel, planes in enumerate(prepared.color))]
+        for planes, vertices, bits, high in values:
+            word = fixed.wrap(planes.start[0] + right.astype(object) * planes.step_x[0]
+                              + down.astype(object) * planes.step_y[0], bits + fraction_bits)
+            stored = (word >> fraction_bits).astype(np.int64)
+            assert ((stored >= vertices.min()) & (stored <= vertices.max())).all()
+            np.testing.assert_array_equal(stored, bit_true.evaluate(
+                planes, fraction_bits, np.zeros_like(right), right, down, high))
+            checked += len(stored)
+            if planes is prepared.depth:
+                off += int(np.count_nonzero(stored != found.depth[chosen]))
+    print(f"{size}: {fraction_bits} fraction bits, {checked} values, {off} depths not exact")
+    assert checked > 20_000 and off > 0
