@@ -44,6 +44,7 @@ class LineSelector(wiring.Component):
                 source.read_busy.eq(self.lines.read_busy),
                 source.read_data.eq(self.lines.read_data),
                 source.write_busy.eq(self.lines.write_busy),
+                source.scanned.eq(self.lines.scanned),
             ]
         *selected, default = self.sources
         m.d.comb += [self.lines.read.eq(default.read), self.lines.write.eq(default.write)]
