@@ -4,16 +4,13 @@ from amaranth.hdl import *
 from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.cards import domains
 from ..golden.configuration import MachineConfiguration
+from ..golden.lanes import FRAGMENTS_WAITING, depth_lanes
 from .backplane import ProcessingElementLines
 from .depth_lane import DepthLane
 from .fragment_stepper import fragment_layout
 
 __all__ = ["DepthTest"]
-
-#: Fragments of each of two lanes that can wait, so that short runs in one unit even out.
-FRAGMENTS_WAITING = 16
 
 
 class DepthTest(wiring.Component):
@@ -47,8 +44,6 @@ class DepthTest(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        most = max((units for _, units in domains(configuration.cards)), default=1)
-        self._lanes = 2 if most > 1 else 1
         super().__init__({
             "fragments": In(stream.Signature(fragment_layout(configuration))),
             "memory": Out(ProcessingElementLines(configuration)),
@@ -59,7 +54,7 @@ class DepthTest(wiring.Component):
     @property
     def lanes(self) -> int:
         """1 or 2."""
-        return self._lanes
+        return depth_lanes(self.configuration)
 
     @property
     def waiting(self) -> int:

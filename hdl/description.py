@@ -18,8 +18,8 @@ __all__ = ["component_for", "describe"]
 
 #: The four boards and what of them states figures.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator", "span_walker", "span_start", "fragment_stepper", "depth_test", "depth_lane",
-          "read_back", "response_link", "survey", "frame_tags", "tag_sweep")
+          "video_scan_generator", "span_walker", "span_start", "fragment_stepper", "depth_test",
+          "depth_lane", "read_back", "response_link", "survey", "frame_tags", "tag_sweep")
 _TIMED_MEMORY = {1: "one_port_memory", 2: "two_port_memory"}  # by its ports
 
 
