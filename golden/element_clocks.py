@@ -138,9 +138,11 @@ def element_clocks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpan
     lowest = np.searchsorted(element[pair], element)  # the element's first span of this part
 
     def before_end(spans_back: int) -> Float64:
-        """From the start of the span so many before the last to the last one's end."""
+        """From the start of the span so many before the last to the last one's end: a clock each
+        at least, also where no span is more than the end of a triangle."""
         place = last - spans_back
-        return np.where(place >= lowest, end - begins[np.maximum(place, 0)], np.inf)
+        return np.where(place >= lowest,
+                        np.maximum(end - begins[np.maximum(place, 0)], spans_back), np.inf)
 
     alone = end + (np.maximum.reduceat(offset - begins[:-1], first) if len(first) else 0)
     held = before_end(pipeline.spans_ahead) + pipeline.lead

@@ -291,7 +291,7 @@ def written_out(configuration, listed, pipeline, depth, setup):
             done = clocks[element][:number[element]]
 
             def back(spans, done=done, end=free[element]):
-                return end - sum(done[-1 - spans:]) if len(done) > spans else never
+                return end - max(spans, sum(done[-1 - spans:])) if len(done) > spans else never
 
             load[element] = max(begin + walk, back(pipeline.spans_ahead) - pipeline.lead)
             freed[element].append(1 + max(begin + walk + pipeline.found,
