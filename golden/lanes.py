@@ -32,7 +32,7 @@ def depth_lanes(configuration: MachineConfiguration) -> int:
 
 def scan_shares(configuration: MachineConfiguration) -> Float64:
     """float64 (rows, elements, 2): of a clock in such a row of the picture, how much the scan
-    has of each lane, horizontal blanking included.  The rows repeat."""
+    has of each lane; blanking of both kinds is spread over all.  The rows repeat."""
     interlace, timing = configuration.interlace, configuration.timing
     columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
     rows = 1 << interlace.unit_mask("y").bit_length()
@@ -46,7 +46,7 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     groups = columns >> interlace.group_bits
     read = np.zeros((rows, groups, configuration.processing_elements + 1, 2))
     read[y, x >> interlace.group_bits, owner[unit], lane] = 1
-    shown = timing.horizontal_active / timing.horizontal_total
+    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
     clocks = configuration.clocks_per_pixel << interlace.group_bits + interlace.x_shift
     return np.asarray(read[:, :, :-1].mean(axis=1) * (shown / clocks))
 
@@ -60,13 +60,9 @@ class LaneClocks:
     def __init__(self, configuration: MachineConfiguration) -> None:
         timing, elements = configuration.timing, configuration.processing_elements
         self._waiting = FRAGMENTS_WAITING if depth_lanes(configuration) == 2 else 0
-        self._clocks_per_line = timing.horizontal_total * configuration.clocks_per_pixel
-        # Of every line of the scan, blanking included.
-        shares = scan_shares(configuration)
-        lines = np.arange(timing.vertical_total)
-        every = shares[(lines >> configuration.interlace.y_shift) % len(shares)]
-        every[timing.vertical_active:] = 0
-        self._shares: list[list[list[float]]] = every.tolist()
+        clocks_per_line = timing.horizontal_total * configuration.clocks_per_pixel
+        self._clocks_per_row = clocks_per_line << configuration.interlace.y_shift
+        self._shares: list[list[list[float]]] = scan_shares(configuration).tolist()
         self._now = [0.0] * elements
         #: When each lane has done all it has.
         self._done = [[0.0, 0.0] for _ in range(elements)]
@@ -81,12 +77,12 @@ class LaneClocks:
         """
         work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
         clocks, left = np.empty(len(element)), np.empty(len(element))
-        lines, waiting = len(self._shares), self._waiting
+        rows, waiting = len(self._shares), self._waiting
         for place, (which, earliest, (even, odd), written, worked) in enumerate(zip(
                 element.tolist(), begin.tolist(), reads.tolist(), writes.tolist(), work.tolist(),
                 strict=True)):
             now, done = max(self._now[which], earliest), self._done[which]
-            share = self._shares[int(now / self._clocks_per_line) % lines][which]
+            share = self._shares[int(now / self._clocks_per_row) % rows][which]
             # A read is lost where one lane writes while the scan has the other.
             end = now + even + odd + written[0] * share[1] + written[1] * share[0]
             for lane, count in enumerate((even, odd)):

@@ -33,8 +33,9 @@ def scan_share(configuration: MachineConfiguration) -> float:
 class PortClocks:
     """The clocks of all spans of a list, asked for in drawing order; ``after`` was drawn before.
 
-    Exact with two ports.  With one within two percent of the simulated cases, but for those that
-    take less than a few lines of the scan: where it was as they began is not known.
+    Exact with two ports.  With one within two percent of the simulated cases, mostly; where
+    the scan is as a list begins is not known, so one that takes less than a few of its lines may be
+    five percent off, and so may one whose units alternate from row to row only.
     """
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,

@@ -19,9 +19,8 @@ class DepthLane(wiring.Component):
     takes it.  A fragment in *compare* whose pixel is in *write*, or was written
     last, compares with that winner instead of its stale answer; so primitives
     may hit one pixel in consecutive clocks.  No older write can be missing from
-    the answer: a fragment moves into *answer*, so of those before it only two can
-    still be on their way, and it moves on in the clock in which the second of them
-    leaves *write*, if that is not over yet.
+    the answer: when a fragment is read at most two before it are still on their way,
+    and it is compared no later than in the clock in which the second one is written.
 
     A write is offered three clocks after its read.  Three is odd on purpose: on
     one unit reads and writes then take turns, so that its port is never idle.

@@ -130,7 +130,8 @@ def test_share_of_the_scan(cards, options):
             for element, lane in lanes:
                 taken[y, element, lane] += 1
     shares = scan_shares(machine)
-    found = shares[np.arange(24) % len(shares)] * machine.timing.horizontal_total * 4
+    line = machine.timing.pixels / 24 * 4
+    found = shares[np.arange(24) % len(shares)] * line
     np.testing.assert_allclose(found, taken)
     assert depth_lanes(machine) == (2 if "MM" in cards else 1)
 
