@@ -11,7 +11,7 @@ class Activity(IntEnum):
     """What a processing element does in a clock."""
 
     FRAGMENT = 0  # the depth test took a fragment
-    PORT = 1  # a fragment waited: its unit's port was writing
+    PORT = 1  # a fragment waited: its unit's port had others before it
     SCAN = 2  # a fragment waited: its unit's port was the scan's
     EMPTY_ROW = 3  # no fragment: the walker met a row or a block without pixels of its own
     PREPARING = 4  # no fragment: the walker took up another block of its domain

@@ -30,8 +30,9 @@ from .element_clocks import PIPELINE, walks
 from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
+from .lanes import FRAGMENTS_WAITING
 from .lattice_spans import lattice_blocks, lattice_spans
-from .port_clocks import WRITE_LATENCY, scan_share
+from .port_clocks import scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -82,11 +83,10 @@ def estimate_cycles(configuration: MachineConfiguration,
         count = spans.end - spans.begin
         places = spans.triangle * elements + spans.element
         # Writes wait for reads of the same unit: none where units are in turn along the row; where
-        # they are from row to row, those of a row that is longer than a write's way.
+        # they are from row to row, those of a row that is longer than what can wait.
         alone = (interlace.x_unit_bits == spans.x_bits) & (interlace.y_unit_bits == spans.y_bits)
-        waits = np.where(alone, spans.length,
-                         (spans.length - 1) // WRITE_LATENCY * WRITE_LATENCY)
-        waits[interlace.x_unit_bits > spans.x_bits] = 0
+        waits = np.where(alone, spans.length, np.maximum(spans.length - FRAGMENTS_WAITING, 0))
+        waits[(interlace.x_unit_bits > spans.x_bits) | (~alone & configuration.skew)] = 0
         clocks = (spans.length + written * waits) / (1 - slots)
         drawn = np.bincount(places, clocks, count * elements)
         _, walked, _ = walks(blocks, elements, spans, PIPELINE)

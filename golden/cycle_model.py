@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import PIPELINE, Pipeline, element_clocks
+from .element_clocks import PIPELINE, Pipeline, element_clocks, walks
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
 from .port_clocks import PortClocks
@@ -119,12 +119,18 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     arrivals = None if setup is None else _SetUp(setup, triangles.primitive)
     finished: list[float] = []
     bound = np.zeros((2, elements))
+    begun = np.zeros(elements)
     for spans in lattice_spans(triangles, blocks):
-        clocks = element_clocks(blocks, elements, spans, ports.of(spans), pipeline)
+        walked = _, walk, first_row = walks(blocks, elements, spans, pipeline)
+        load = begun + np.cumsum(walk, axis=0) - walk
+        begun = begun + walk.sum(axis=0)
+        found = (load[spans.triangle, spans.element] + first_row[spans.triangle, spans.block]
+                 + spans.step)
+        clocks = element_clocks(blocks, elements, spans, walked, *ports.of(spans, found), pipeline)
         bound += [np.bincount(clocks.element, clocks.walk, elements),
                   np.bincount(spans.element, spans.length, elements)]
         costs = list(zip(*(getattr(clocks, name).tolist() for name in (
-            "element", "walk", "draw", "alone", "held")), strict=True))
+            "element", "walk", "draw", "alone", "held", "left")), strict=True))
         places = np.searchsorted(clocks.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
         for first, end in pairwise(places):
             sent = cage.broadcast(0.0 if arrivals is None else arrivals.arrival())
@@ -193,7 +199,8 @@ class _Cage:
         self._earlier_room = self._room
         return self._sent
 
-    def take(self, element: int, walk: float, draw: float, alone: float, held: float) -> None:
+    def take(self, element: int, walk: float, draw: float, alone: float, held: float,
+             left: float) -> None:
         """The triangle that was sent; see ``ElementClocks``."""
         pipeline = self._pipeline
         load = max(self._load[element], self._sent + pipeline.queue)
@@ -205,4 +212,4 @@ class _Cage:
         places.popleft()
         places.append(1 + max(walked + pipeline.found, drawn - pipeline.valued))
         self._room = max(self._room, places[0])
-        self.finished = max(self.finished, drawn + pipeline.finish)
+        self.finished = max(self.finished, drawn + left + pipeline.finish)

@@ -63,6 +63,7 @@ class ElementClocks:
                   where nothing came before
     ``held``      float64 (n,): the last span leaves the walker no sooner than so long before its
                   last fragment's end
+    ``left``      float64 (n,): from the last fragment's end until its accesses are done
     """
 
     triangle: Int64
@@ -71,10 +72,15 @@ class ElementClocks:
     draw: Float64
     alone: Float64
     held: Float64
+    left: Float64
+
+
+#: Which element keeps which triangle, the clocks of its walk, and those to each first row.
+Walked = tuple[Bool, Int64, Int64]
 
 
 def walks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
-          pipeline: Pipeline) -> tuple[Bool, Int64, Int64]:
+          pipeline: Pipeline) -> Walked:
     """Which element keeps which triangle, bool (triangles, elements); from its load the clocks to
     the next one, alike; and to the first row of each block, (triangles, blocks).
 
@@ -105,9 +111,11 @@ def _blocks_of(blocks: list[LatticeBlock], elements: int) -> Int64:
 
 
 def element_clocks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
-                   clocks: Float64, pipeline: Pipeline) -> ElementClocks:
-    """``clocks``: of each span at the ports, float64 (spans,)."""
-    kept, walk, first_row = walks(blocks, elements, spans, pipeline)
+                   walked: Walked, clocks: Float64, left: Float64,
+                   pipeline: Pipeline) -> ElementClocks:
+    """``walked``: what ``walks`` says; ``clocks``: of each span at the ports, float64 (spans,), and
+    ``left``: after it."""
+    kept, walk, first_row = walked
     again = np.where(_blocks_of(blocks, elements) > 1, pipeline.again, 0)
     triangle, element = np.nonzero(kept)
     # By element, so that what follows one another in one lies together.
@@ -126,16 +134,20 @@ def element_clocks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpan
     lowest = np.searchsorted(element[pair], element)  # the element's first span of this part
 
     def before_end(spans_back: int) -> Float64:
-        """From the start of the span so many before the last to the last one's end."""
+        """From the start of the span so many before the last to the last one's end: a clock each
+        at least, also where no span is more than the end of a triangle."""
         place = last - spans_back
-        return np.where(place >= lowest, end - begins[np.maximum(place, 0)], np.inf)
+        return np.where(place >= lowest,
+                        np.maximum(end - begins[np.maximum(place, 0)], spans_back), np.inf)
 
     alone = end + (np.maximum.reduceat(offset - begins[:-1], first) if len(first) else 0)
     held = before_end(pipeline.spans_ahead) + pipeline.lead
+    last_left = np.zeros(len(triangle))
+    last_left[pairs[spans.triangle, spans.element]] = left  # the last assignment stays
     order = np.lexsort((element, triangle))
     return ElementClocks(
         triangle[order], element[order], walk[triangle, element][order].astype(np.float64),
-        (end - begins[first])[order], alone[order], held[order])
+        (end - begins[first])[order], alone[order], held[order], last_left[order])
 
 
 def _entries(spans: LatticeSpans, pairs: Int64, clocks: Float64, walk: Int64, again: Int64,

@@ -28,8 +28,8 @@ class ElementActivity(wiring.Component):
     -------
     offered, taken: In(1)
         A fragment is at the depth test; it takes it.
-    writing: In(1)
-        The unit that the fragment would read takes a write in this clock.
+    scanned: In(1)
+        The scan has the port that the fragment waits for.
     preparing, empty_row: In(1)
         The walker prepares; it passes a row without pixels.
     walking: In(1)
@@ -46,7 +46,7 @@ class ElementActivity(wiring.Component):
             raise ValueError(f"delay must not be negative, not {delay!r}")
         self._delay = delay
         super().__init__({
-            **{name: In(1) for name in ("offered", "taken", "writing", "preparing", "empty_row",
+            **{name: In(1) for name in ("offered", "taken", "scanned", "preparing", "empty_row",
                                         "walking", "service")},
             "activity": Out(ACTIVITY_BITS),
         })
@@ -74,7 +74,7 @@ class ElementActivity(wiring.Component):
         with m.If(self.taken):
             m.d.comb += self.activity.eq(Activity.FRAGMENT)
         with m.Elif(self.offered):
-            m.d.comb += self.activity.eq(Mux(self.writing, Activity.PORT, Activity.SCAN))
+            m.d.comb += self.activity.eq(Mux(self.scanned, Activity.SCAN, Activity.PORT))
         with m.Elif(self.service):
             m.d.comb += self.activity.eq(Activity.SERVICE)
         with m.Else():

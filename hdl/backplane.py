@@ -75,6 +75,9 @@ class ProcessingElementLines(wiring.Signature):
     write: Out(write_request_layout)
     write_busy: In(1)
         The unit's one port is taken by the scan.
+    scanned: In(2)
+        Known before any request: the one port of a unit with an even number is taken by the
+        scan, and of one with an odd number.
     """
 
     def __init__(self, configuration: MachineConfiguration):
@@ -84,6 +87,7 @@ class ProcessingElementLines(wiring.Signature):
             "read_data": In(configuration.depth_bits),
             "write": Out(write_request_layout(configuration)),
             "write_busy": In(1),
+            "scanned": In(2),
         })
 
 

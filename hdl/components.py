@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from ..golden.configuration import MachineConfiguration
 from .broadcast_queue import BroadcastQueue
 from .central_broadcast_controller import CentralBroadcastController
+from .depth_lane import DepthLane
 from .depth_test import DepthTest
 from .divider import Divider
 from .edge_columns import EdgeColumns
@@ -55,6 +56,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "memory_unit": lambda c: MemoryUnit(configuration=c),
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
+    "depth_lane": lambda c: DepthLane(configuration=c),
     "depth_test": lambda c: DepthTest(configuration=c),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "edge_columns": lambda c: EdgeColumns(configuration=c),

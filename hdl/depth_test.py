@@ -1,45 +1,46 @@
-"""The Z-buffer comparison: read, compare, write, without a lost update (figure 3)."""
+"""The Z-buffer comparison of one-port memories: two lanes share the lines (figure 3)."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
+from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.configuration import MachineConfiguration
+from ..golden.lanes import FRAGMENTS_WAITING, depth_lanes
 from .backplane import ProcessingElementLines
+from .depth_lane import DepthLane
 from .interpolator import fragment_layout
 
 __all__ = ["DepthTest"]
 
 
 class DepthTest(wiring.Component):
-    """A fragment strictly nearer than what is stored replaces it.
+    """A fragment strictly nearer than what is stored replaces it; those of a pixel in order.
 
-    Four stages: *read* asks the memory unit, *answer* takes the stored depth
-    into a register, *compare* decides, *write* holds a winner until its unit
-    takes it.  A fragment in *compare* whose pixel is in *write*, or was written
-    last, compares with that winner instead of its stale answer; so primitives
-    may hit one pixel in consecutive clocks.  No older write can be missing from
-    the answer: a unit's single port does not read while a write to it waits.
+    A unit has one port, and a visible fragment two accesses.  So units with an even
+    and with an odd number have a ``DepthLane`` each, and fragments that wait for it:
+    while one lane writes, the other reads.  The two never have a pixel in common.
+    In each clock the lines carry a write of a lane that has one, of both in turn, and
+    a read of the other lane; where nothing is written, of that with more waiting.  A
+    lane keeps still while the scan has the port of one of its units.
 
-    A write is offered three clocks after its read.  Three is odd on purpose: on
-    two units in alternation reads and writes then never meet.
+    Where no processing element has more than one unit there is one lane, and nothing
+    waits outside it.
 
-    Latency: ``latency`` clocks from a fragment's read to its write.  Throughput:
-    a fragment a clock while its unit has the port: on one unit each visible
-    fragment takes two accesses, two units in turn take one a clock.
+    Latency: ``latency`` clocks from a fragment's read to its write; ``waiting`` from a
+    fragment to its read.  Throughput: a fragment a clock while the ports of even and
+    odd units have as many accesses; on one unit two clocks for a visible one.
 
     Members
     -------
     fragments: In(stream of fragment_layout)
     memory: Out(ProcessingElementLines)
-        The write address is 0 from a clock after the last ``busy`` one on.
     busy: Out(1)
         Holds a fragment.
     forwarded: Out(1)
-        In this clock a comparison used the last or the waiting winner, not the answer.
+        In this clock a comparison used a winner on its way, not the answer.
     """
 
-    latency = 3
+    latency = DepthLane.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -50,68 +51,76 @@ class DepthTest(wiring.Component):
             "forwarded": Out(1),
         })
 
+    @property
+    def lanes(self) -> int:
+        """1 or 2."""
+        return depth_lanes(self.configuration)
+
+    @property
+    def waiting(self) -> int:
+        """Clocks from a fragment to its read, where nothing was under way."""
+        return 0 if self.lanes == 1 else 2
+
     def elaborate(self, platform):
         m = Module()
-        memory, fragment = self.memory, self.fragments.payload
-        layout = fragment_layout(self.configuration)
-        answer, compare, write, written = (
-            Signal(layout, name=name) for name in ("answer", "compare", "write", "written"))
-        answering, comparing, winning, has_written = (
-            Signal(name=name) for name in ("answering", "comparing", "winning", "has_written"))
-        fresh = Signal()  # the answer is on the lines in this clock only
-        held, stored = (Signal(self.configuration.depth_bits, name=name)
-                        for name in ("held", "stored"))
-
-        # Each stage moves on when the next one is empty or moves on itself.
-        write_moves = ~winning | ~memory.write_busy
-        compare_moves = ~comparing | write_moves
-        answer_moves = ~answering | compare_moves
-        taken = self.fragments.valid & self.fragments.ready
+        lanes = [DepthLane(configuration=self.configuration) for _ in range(self.lanes)]
+        for number, lane in enumerate(lanes):
+            m.submodules[f"lane_{number}"] = lane
+        if self.lanes == 1:
+            (lane,) = lanes
+            wiring.connect(m, wiring.flipped(self.fragments), lane.fragments)
+            wiring.connect(m, lane.memory, wiring.flipped(self.memory))
+            m.d.comb += [self.busy.eq(lane.busy), self.forwarded.eq(lane.forwarded)]
+            return m
+        levels = self._queues(m, lanes)
+        self._share(m, lanes, levels)
         m.d.comb += [
-            memory.read.valid.eq(self.fragments.valid & answer_moves),
-            memory.read.unit.eq(fragment.unit),
-            memory.read.address.eq(fragment.address),
-            self.fragments.ready.eq(answer_moves & ~memory.read_busy),
-            self.busy.eq(answering | comparing | winning),
-        ]
-        m.d.sync += fresh.eq(taken)
-        with m.If(answer_moves):
-            m.d.sync += [answering.eq(taken), answer.eq(fragment)]
-        with m.If(fresh):
-            m.d.sync += held.eq(memory.read_data)
-        with m.If(compare_moves):
-            m.d.sync += [
-                comparing.eq(answering),
-                compare.eq(answer),
-                stored.eq(Mux(fresh, memory.read_data, held)),
-            ]
-
-        def same_pixel(valid, other):
-            return (valid & (other.unit == compare.unit) & (other.address == compare.address))
-
-        waiting = Signal()
-        done = Signal()
-        nearest = Signal.like(stored)
-        m.d.comb += [
-            waiting.eq(same_pixel(winning, write)),
-            done.eq(same_pixel(has_written, written)),
-            nearest.eq(Mux(waiting, write.depth, Mux(done, written.depth, stored))),
-            self.forwarded.eq(comparing & compare_moves & (waiting | done)),
-        ]
-        with m.If(write_moves):
-            m.d.sync += [winning.eq(comparing & (compare.depth < nearest)), write.eq(compare)]
-            with m.If(~comparing):
-                m.d.sync += write.address.eq(0)
-            with m.If(winning):
-                m.d.sync += [has_written.eq(1), written.eq(write)]
-        with m.If(~self.busy):
-            # Every later read sees the write in memory, until something else clears it there.
-            m.d.sync += has_written.eq(0)
-        m.d.comb += [
-            memory.write.valid.eq(winning),
-            memory.write.unit.eq(write.unit),
-            memory.write.address.eq(write.address),
-            memory.write.depth.eq(write.depth),
-            memory.write.color.eq(write.color),
+            self.busy.eq(Cat(lane.busy for lane in lanes).any() | Cat(*levels).any()),
+            self.forwarded.eq(Cat(lane.forwarded for lane in lanes).any()),
         ]
         return m
+
+    def _queues(self, m, lanes):
+        """From the fragments to the lanes.  Returns how many wait before each."""
+        fragment, levels = self.fragments.payload, []
+        for number, lane in enumerate(lanes):
+            m.submodules[f"queue_{number}"] = queue = fifo.SyncFIFOBuffered(
+                width=fragment.shape().size, depth=FRAGMENTS_WAITING)
+            mine = fragment.unit[0] == number
+            m.d.comb += [
+                queue.w_data.eq(fragment),
+                queue.w_en.eq(self.fragments.valid & mine),
+                lane.fragments.valid.eq(queue.r_rdy),
+                lane.fragments.payload.eq(queue.r_data),
+                queue.r_en.eq(lane.fragments.ready),
+            ]
+            with m.If(mine):
+                m.d.comb += self.fragments.ready.eq(queue.w_rdy)
+            levels.append(queue.level)
+        return levels
+
+    def _share(self, m, lanes, levels):
+        """Which lane has the lines to write, and which to read."""
+        lines, even, odd = self.memory, *(lane.memory for lane in lanes)
+        turn = Signal()  # of the two, who writes if both can
+        writes, reads = (Signal(2, name=name) for name in ("writes", "reads"))
+        writer, reader, rather = (Signal(name=name) for name in ("writer", "reader", "rather"))
+        m.d.comb += [
+            writes.eq(Cat(even.write.valid, odd.write.valid) & ~lines.scanned),
+            reads.eq(Cat(even.read.valid, odd.read.valid) & ~lines.scanned),
+            writer.eq(Mux(writes.all(), turn, writes[1])),
+            rather.eq(Mux(writes.any(), ~writer, levels[1] > levels[0])),
+            reader.eq(Mux(reads.all(), rather, reads[1])),
+            lines.write.eq(Mux(writer, odd.write, even.write)),
+            lines.write.valid.eq(writes.any()),
+            lines.read.eq(Mux(reader, odd.read, even.read)),
+            lines.read.valid.eq(reads.any()),
+        ]
+        with m.If(writes.any()):
+            m.d.sync += turn.eq(~writer)
+        for number, lane in enumerate((even, odd)):
+            m.d.comb += [
+                lane.read_data.eq(lines.read_data),
+                lane.write_busy.eq(lines.write_busy | ~writes[number] | (writer != number)),
+                lane.read_busy.eq(lines.read_busy | ~reads[number] | (reader != number)),
+            ]

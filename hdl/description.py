@@ -20,7 +20,7 @@ __all__ = ["component_for", "describe"]
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
           "video_scan_generator", "span_walker", "fragment_stepper", "interpolator", "read_back",
           "response_link", "survey", "frame_tags", "tag_sweep")
-_TIMED_BY_PORTS = {1: ("depth_test", "one_port_memory"),
+_TIMED_BY_PORTS = {1: ("depth_test", "depth_lane", "one_port_memory"),
                    2: ("two_port_depth_test", "two_port_memory")}
 
 

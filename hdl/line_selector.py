@@ -46,6 +46,7 @@ class LineSelector(wiring.Component):
                 source.read_busy.eq(lines.read_busy),
                 source.read_data.eq(lines.read_data),
                 source.write_busy.eq(lines.write_busy),
+                source.scanned.eq(lines.scanned),
             ]
         m.d.comb += [lines.read.eq(self.depth_test.read), lines.write.eq(self.depth_test.write)]
         with m.If(self.surveying):

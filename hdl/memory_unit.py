@@ -114,6 +114,7 @@ class MemoryUnit(wiring.Component):
         lines, onward = self.left.lines, self.right.lines
         write, read = lines.write, lines.read
         access, pictures = self.memory.access, self.pictures
+        scanned = access.scan if self.configuration.memory_ports == 1 else C(0)
         write_here = Signal()
         read_here = Signal()
         answered = Signal()
@@ -130,6 +131,7 @@ class MemoryUnit(wiring.Component):
             access.color_in.tag.eq(
                 Mux(pictures.front, pictures.color_tag[0], pictures.color_tag[1])),
             lines.write_busy.eq(onward.write_busy | (write_here & access.write_busy)),
+            lines.scanned.eq(onward.scanned | Mux(scanned, Mux(number[0], 2, 1), 0)),
 
             read_here.eq(read.valid & (read.unit == number)),
             access.read.eq(read_here),

@@ -50,8 +50,8 @@ class ProcessingElement(wiring.Component):
     Latency: from a triangle's strobe to the read of its first fragment ``latency``
     clocks.  Throughput: a fragment a clock while ports are free: rows are found
     ahead, at one a clock, triangle after triangle.  A visible fragment takes
-    two accesses of its unit's one port, so two clocks where a row lies in one
-    unit (domains of one or two units), one where units alternate along it.
+    two accesses of its unit's one port, so two clocks on one unit; on two it
+    takes one where fragments alternate between them, within the few that wait.
 
     Members
     -------
@@ -62,9 +62,6 @@ class ProcessingElement(wiring.Component):
     activity: Out(4)
         What it does in this clock; only where the configuration says ``observe``.
     """
-
-    latency = (BroadcastQueue.latency + SpanWalker.latency + SPANS_LATENCY + FragmentStepper.latency
-               + Interpolator.latency)
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -77,6 +74,11 @@ class ProcessingElement(wiring.Component):
             "broadcast": In(BroadcastLines(configuration)),
             **({"activity": Out(ACTIVITY_BITS)} if configuration.observe else {}),
         })
+
+    @property
+    def latency(self) -> int:
+        return (BroadcastQueue.latency + SpanWalker.latency + SPANS_LATENCY
+                + FragmentStepper.latency + Interpolator.latency + self.depth_test.waiting)
 
     def elaborate(self, platform):
         m = Module()
@@ -193,8 +195,7 @@ class ProcessingElement(wiring.Component):
         m.d.comb += [
             observer.offered.eq(fragments.valid),
             observer.taken.eq(fragments.valid & fragments.ready),
-            observer.writing.eq(lines.write.valid & (lines.write.unit == fragments.payload.unit)
-                                & ~lines.write_busy),
+            observer.scanned.eq(lines.scanned.bit_select(fragments.payload.unit[0], 1)),
             observer.preparing.eq(walker.preparing),
             observer.empty_row.eq(walker.empty_row),
             observer.walking.eq(walker.busy),

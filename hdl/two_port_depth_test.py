@@ -39,6 +39,7 @@ class TwoPortDepthTest(wiring.Component):
     """
 
     latency = 3
+    waiting = 0  #: Clocks from a fragment to its read.
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration

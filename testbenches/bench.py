@@ -27,8 +27,8 @@ class BenchRow:
 
     ``measured``    None where only the model was asked
     ``predicted``   T(2n) - T(n) by the cycle model
-    ``bound``       clocks below which n triangles cannot come: ``CyclePrediction.bounds``
-    ``binding``     which of those it is
+    ``bound``       T(2n) - T(n) at the bounds of both: ``CyclePrediction.bounds``
+    ``binding``     which of those it is, of 2n
     """
 
     machine: BenchMachine
@@ -100,5 +100,5 @@ def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -
     once = predict_cycles(configuration, case.once, setup=setup)
     twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
-                    predicted=twice.cycles - once.cycles, bound=twice.bound / 2,
+                    predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
                     binding=twice.binding)

@@ -25,8 +25,9 @@ from .machine_options import (
 #: Amaranth and so is not asked here).
 COMPONENT_NAMES = (
     "central_broadcast_controller", "processing_element", "memory_unit", "video_scan_generator",
-    "broadcast_queue", "depth_test", "divider", "edge_columns", "edge_setup", "fragment_stepper",
-    "frame_tags", "id_increment", "interpolator", "lattice_block", "line_selector",
+    "broadcast_queue", "depth_lane", "depth_test", "divider", "edge_columns", "edge_setup",
+    "fragment_stepper", "frame_tags", "id_increment", "interpolator", "lattice_block",
+    "line_selector",
     "one_port_memory", "pipelined_multiplier", "pixel_address", "pixel_box", "plane_setup",
     "processing_element_control", "read_back", "response_link", "result_queue", "row_walker",
     "sampling_grid", "scan_address", "span_clip", "span_walker", "survey", "tag_sweep",

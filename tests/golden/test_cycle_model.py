@@ -17,8 +17,9 @@ from cardcage.golden.display_list import DisplayList
 from cardcage.golden.element_clocks import Pipeline
 from cardcage.golden.exact import draw, fragments
 from cardcage.golden.grid import Grid
+from cardcage.golden.lanes import FRAGMENTS_WAITING, LaneClocks, depth_lanes, scan_shares
 from cardcage.golden.lattice_spans import lattice_blocks, lattice_spans
-from cardcage.golden.port_clocks import WRITE_LATENCY, PortClocks, RowClocks
+from cardcage.golden.port_clocks import PortClocks
 from cardcage.golden.scene_display_list import make_display_list
 
 CARDS = ("PM", "PMM", "2x(PM)", "PMPMMM", "4x(PMM)")
@@ -99,7 +100,7 @@ def test_written_fragments():
     configuration = configure(listed, cards="PM", clocks_per_pixel=256)
     triangles, parts = spans_of(configuration, listed)
     ports = PortClocks(configuration, listed, triangles)
-    total = sum(float(ports.of(part).sum()) for part in parts)
+    total = sum(float(ports.of(part, np.zeros(len(part.length)))[0].sum()) for part in parts)
     nearest = np.full((28, 40), configuration.depth_background)
     accesses = 0
     drawn = fragments(listed)
@@ -113,28 +114,90 @@ def test_written_fragments():
     assert ports.bound == pytest.approx(accesses, rel=0.01)
 
 
-@pytest.mark.parametrize("units", [1, 2, 4])
-def test_reads_and_writes_of_rows_clock_by_clock(units):
-    """Against a port that takes the write first, else the read, and two elements interleaved."""
-    pick = random.Random(f"rows {units}")
-    runs = [(pick.randrange(2), pick.randrange(units), pick.choice((1, 1, 2, 3, 4, 7, 20)))
-            for _ in range(300)]
-    clocks = RowClocks(2, units)
-    element, unit, length = (np.array(column) for column in zip(*runs, strict=True))
-    found = np.concatenate([clocks.of(element[part], unit[part], length[part])
-                            for part in (slice(0, 111), slice(111, None))])
-    for chosen in range(2):
-        now, writes = 0, set()
-        for place, (which, in_unit, reads) in enumerate(runs):
-            if which != chosen:
-                continue
-            begin = now
-            while reads:
-                if (now, in_unit) not in writes:
-                    writes.add((now + WRITE_LATENCY, in_unit))
-                    reads -= 1
-                now += 1
-            assert found[place] == now - begin
+@pytest.mark.parametrize(("cards", "options"), [
+    ("PM", {}), ("PMM", {}), ("PMM", {"skew": True}), ("2x(PMM)", {"skew": True}),
+    ("4x(PM)", {"skew": True}), ("PMPMMM", {}), ("2x(PMM)", {"block": 4}), ("PMMMM", {})])
+def test_share_of_the_scan(cards, options):
+    """Against every pixel of the screen: a unit reads as the group of pixels begins."""
+    machine = MachineConfiguration(cards, 40, 24, clocks_per_pixel=4, **options)
+    interlace = machine.interlace
+    group = 1 << interlace.group_bits
+    taken = np.zeros((24, machine.processing_elements, 2))
+    for y in range(24):
+        for x in range(0, 40, group):
+            units = {int(interlace.unit(x + step, y)) for step in range(group)}
+            lanes = {(owner(machine, unit), unit % depth_lanes(machine)) for unit in units}
+            for element, lane in lanes:
+                taken[y, element, lane] += 1
+    shares = scan_shares(machine)
+    line = machine.timing.pixels / 24 * 4
+    found = shares[np.arange(24) % len(shares)] * line
+    np.testing.assert_allclose(found, taken)
+    assert depth_lanes(machine) == (2 if "MM" in cards else 1)
+
+
+def lanes_by_clock(spans, waiting):
+    """Fragments one after the other through two lanes that hold ``waiting``: clocks of each span,
+    and the clocks after the last one until all is done."""
+    queue: list[list[int]] = [[], []]
+    busy, clock, begin, clocks = [0, 0], 0, 0, []
+    pixels = [[(lane, accesses) for lane, accesses in span] for span in spans]
+
+    def step():
+        nonlocal clock
+        for lane in range(2):
+            if not busy[lane] and queue[lane]:
+                busy[lane] = queue[lane].pop(0)
+            busy[lane] = max(0, busy[lane] - 1)
+        clock += 1
+
+    for span in pixels:
+        for lane, accesses in span:
+            while len(queue[lane]) >= waiting:
+                step()
+            queue[lane].append(accesses)
+            step()
+        clocks.append(clock - begin)
+        begin = clock
+    while any(queue) or any(busy):
+        step()
+    return clocks, clock - begin
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_lanes_follow_one_another(seed):
+    """Against queues of fragments, stepped clock by clock, where nothing is scanned."""
+    pick = random.Random(f"lanes {seed}")
+    spans = []
+    for _ in range(400):
+        first, length = pick.randrange(2), pick.choice((1, 1, 2, 5, 9, 30, 60))
+        visible, turns = pick.choice((0.3, 0.7, 1)), pick.random() < 0.4  # along the row, or not
+        spans.append([((first + turns * place) % 2, 1 + (pick.random() < visible))
+                      for place in range(length)])
+    machine = MachineConfiguration("PMM", 8, 1 << 12, words=1 << 14, clocks_per_pixel=256)
+    reads, writes = (np.array([[sum(lane == which and accesses > least for lane, accesses in span)
+                                for which in range(2)] for span in spans]) for least in (0, 1))
+    of = LaneClocks(machine).of
+    ways = np.ones(len(spans), np.int64)
+    clocks, left = of(np.zeros(len(spans), np.int64), np.zeros(len(spans)), reads, writes, ways)
+    by_clock, after = lanes_by_clock(spans, FRAGMENTS_WAITING)
+    print(f"{clocks.sum():.0f} clocks, stepped {sum(by_clock)}; then {left[-1]:.0f}, {after}")
+    assert clocks.sum() == pytest.approx(sum(by_clock), rel=0.02)
+    assert left[-1] == pytest.approx(after, abs=4)
+    assert sum(by_clock) > 1.05 * reads.sum(), "some wait"
+    assert (clocks >= reads.sum(axis=1) - 1e-6).all()
+
+
+def test_lanes_catch_up_while_nothing_is_found():
+    machine = MachineConfiguration("PMM", 8, 8, clocks_per_pixel=256)
+    zero, ways = np.zeros(3, np.int64), np.ones(3, np.int64)
+    even = np.array([[40, 0]] * 3)
+    close, apart = (LaneClocks(machine).of(zero, np.array(begin, float), even, even, ways)
+                    for begin in ((0, 0, 0), (0, 200, 400)))
+    # A row of 40 goes on while the last sixteen wait, and begins anew where these are done.
+    np.testing.assert_allclose(close[0], [48, 80, 80], rtol=0.02)
+    np.testing.assert_allclose(apart[0], [48, 48, 48], rtol=0.02)
+    np.testing.assert_allclose(apart[1], [32, 32, 32], rtol=0.02)
 
 
 def walked_by_hand(configuration: MachineConfiguration, listed: DisplayList, pipeline: Pipeline):
@@ -229,7 +292,7 @@ def written_out(configuration, listed, pipeline, depth, setup):
             done = clocks[element][:number[element]]
 
             def back(spans, done=done, end=free[element]):
-                return end - sum(done[-1 - spans:]) if len(done) > spans else never
+                return end - max(spans, sum(done[-1 - spans:])) if len(done) > spans else never
 
             load[element] = max(begin + walk, back(pipeline.spans_ahead) - pipeline.lead)
             freed[element].append(1 + max(begin + walk + pipeline.found,

@@ -8,7 +8,7 @@ from hdl_bench.pictures import small_machine
 
 from cardcage.hdl.line_selector import LineSelector
 
-ANSWERS = ("read_busy", "read_data", "write_busy")
+ANSWERS = ("read_busy", "read_data", "write_busy", "scanned")
 SOURCES = ("depth_test", "survey", "read_back")
 
 

@@ -141,7 +141,8 @@ class Card(Agent):
         if not self.booted:
             self.fetch = EMPTY
         self.onward = {"write_busy": pick.random() < 0.1, "read_busy": pick.random() < 0.1,
-                       "read_data": pick.choice((0, 0, 0, pick.getrandbits(8)))}
+                       "read_data": pick.choice((0, 0, 0, pick.getrandbits(8))),
+                       "scanned": pick.choice((0, 0, 1, 2))}
         ctx.set(dut.left.id, self.id)
         ctx.set(dut.total, self.total)
         self.pictures(ctx, quiet)
@@ -169,6 +170,8 @@ class Card(Agent):
         read_busy = one and reading and (scanning or writing)
         assert ctx.get(lines.write_busy) == (write_busy or self.onward["write_busy"])
         assert ctx.get(lines.read_busy) == (read_busy or self.onward["read_busy"])
+        mine = (1 << (self.id & 1)) * (one and scanning)
+        assert ctx.get(lines.scanned) == mine | self.onward["scanned"]
         read_data, others = ctx.get(lines.read_data), self.onward["read_data"]
         if self.answer is None:
             assert read_data & others == others

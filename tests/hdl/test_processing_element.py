@@ -240,18 +240,17 @@ def rectangle(configuration, left, top, right, bottom):
                        "red": 1, "green": 2, "blue": 3}}
 
 
-@pytest.mark.parametrize(("cards", "first", "end"), [
-    ("PM", 0, 1), ("PMPM", 0, 1), ("PMPMMM", 0, 1), ("PMPMMMMMMM", 0, 1)])
-def test_latency(cards, first, end):
-    """From a triangle's strobe to the read of its first fragment."""
+@pytest.mark.parametrize(("cards", "first", "end", "latency"), [
+    ("PM", 0, 1, 18), ("PMPM", 0, 1, 18), ("PMPMMM", 0, 1, 20), ("PMPMMMMMMM", 0, 1, 20)])
+def test_latency(cards, first, end, latency):
+    """From a triangle's strobe to the read of its first fragment; some wait before two lanes."""
     configuration = small_machine(cards)
     packets = [SURVEY, None, draw(rectangle(configuration, 0, 0, 8, 8)), None]
     bench = Bench(configuration, first, end, packets, responses=1)
     # The survey reads each unit twice, and once more where one is silent.
     surveyed = 2 * (end - first) + (end < configuration.units)
     reads = bench.memory.reads[surveyed:]
-    assert reads[0][0] - bench.announcer.strobes[1] == ProcessingElement.latency
-    assert ProcessingElement.latency == 18
+    assert reads[0][0] - bench.announcer.strobes[1] == bench.dut.latency == latency
 
 
 def test_throughput_is_a_fragment_a_clock_in_long_rows():
@@ -298,19 +297,31 @@ def test_done_is_low_until_everything_is_written_and_sent(seed):
     assert bench.sink.clocks[0] < bench.announcer.dones[0]
 
 
-@pytest.mark.parametrize(("cards", "end", "clocks"), [
-    ("PM", 1, 2),  # one port: a read and a write each
-    ("PMM", 2, 2),  # the units alternate from row to row only
-    ("PMMMM", 4, 1),  # two units in turn along a row
-    ("PMMMMMMMM", 8, 1),
+@pytest.mark.parametrize(("cards", "end", "skew", "width", "clocks"), [
+    ("PM", 1, False, 16, 2),  # one port: a read and a write each
+    ("PMM", 2, False, 16, 1),  # the units alternate from row to row; a row can wait
+    ("PMM", 2, True, 64, 1),  # along each row
+    ("PMMMM", 4, False, 64, 1),  # two units in turn along a row
+    ("PMMMMMMMM", 8, False, 64, 1),
 ])
-def test_throughput_of_visible_fragments(cards, end, clocks):
+def test_throughput_of_visible_fragments(cards, end, skew, width, clocks):
     """Every fragment visible, as in the worst case for writes: clocks for each."""
-    configuration = small_machine(cards, 16, 8)
+    configuration = small_machine(cards, width, 8, skew=skew)
     packets = [SURVEY, None, FRAME_START, None,
-               draw(rectangle(configuration, 0, 0, 16, 8)), None]
+               draw(rectangle(configuration, 0, 0, width, 8)), None]
     bench = Bench(configuration, 0, end, packets, responses=1)
     reads = [read[0] for read in bench.memory.reads if read[0] > bench.announcer.dones[1]]
-    assert len(reads) == 16 * 8
-    # A few clocks where a row ends in the unit in which the next one begins.
-    assert clocks * 128 - 8 <= reads[-1] - reads[0] + 1 <= clocks * 128 + 8
+    assert len(reads) == width * 8
+    print(reads[-1] - reads[0] + 1)
+    # The first row begins alone, the last one ends alone.
+    alone = 16 if width == 16 else 2
+    assert clocks * width * 8 - 8 <= reads[-1] - reads[0] + 1 <= clocks * width * 8 + 2 + alone
+
+
+def test_rows_longer_than_what_waits_take_two_clocks_a_fragment_in_one_unit():
+    configuration = small_machine("PMM", 128, 4)
+    packets = [SURVEY, None, FRAME_START, None,
+               draw(rectangle(configuration, 0, 0, 128, 4)), None]
+    bench = Bench(configuration, 0, 2, packets, responses=1)
+    reads = [read[0] for read in bench.memory.reads if read[0] > bench.announcer.dones[1]]
+    assert 1.7 * 512 < reads[-1] - reads[0] + 1 < 2 * 512

@@ -8,6 +8,7 @@ from hdl_bench.verilog_tools import icarus, verilator_lint, yosys
 from cardcage.golden.configuration import preset
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.description import component_for, describe
+from cardcage.hdl.fragment_stepper import fragment_layout
 from cardcage.hdl.layouts import operation_layout, planes_layout, span_layout
 from cardcage.hdl.members import described_ports
 from cardcage.hdl.verilog import component_ports, component_verilog, machine_verilog
@@ -127,10 +128,10 @@ def test_one_module_per_component(texts):
 def test_no_memory_has_contents(texts):
     text = texts("paper", "gouraud")
     memories = re.findall(r"^module memory_\d.*?^endmodule", text, re.DOTALL | re.MULTILINE)
-    assert len(memories) == 4
+    assert len(memories) == 5
     for memory in memories:
         assert "initial" not in memory and len(re.findall(r"reg \[.*\] words \[", memory)) == 1
-    assert text.count("words [0:") == 4
+    assert text.count("words [0:") == 5
 
 
 def test_description(texts):
@@ -146,13 +147,14 @@ def test_description(texts):
     assert formats["depth_plane"]["bits"] == configuration.depth_plane_bits
     assert formats["depth_plane"]["fraction_bits"] == 50 and formats["depth_plane"]["signed"]
     assert formats["vertex_coordinate"]["integer_bits"] == configuration.coordinate_bits - 8
-    layouts = operation_layout, span_layout, planes_layout
-    assert sorted(facts["memories"], key=lambda memory: -memory["words"]) == [
-        {"module": "memory_16384x84_lanes_3_no_rw_check", "words": 16384, "bits": 84,
-         "instances": 16, "contents_at_power_on": "unknown"},
-        *({"module": f"memory_15x{layout(configuration).size}", "words": 15,
-           "bits": layout(configuration).size, "instances": 4,
-           "contents_at_power_on": "unknown"} for layout in layouts)]
+    # In each processing element, fragments before each of two lanes.
+    layouts = {operation_layout: 1, span_layout: 1, planes_layout: 1, fragment_layout: 2}
+    assert {memory.pop("module"): memory for memory in facts["memories"]} == {
+        "memory_16384x84_lanes_3_no_rw_check": {
+            "words": 16384, "bits": 84, "instances": 16, "contents_at_power_on": "unknown"},
+        **{f"memory_15x{layout(configuration).size}": {
+            "words": 15, "bits": layout(configuration).size, "instances": 4 * each,
+            "contents_at_power_on": "unknown"} for layout, each in layouts.items()}}
     assert facts["timing"]["video_scan_generator"]["latency_clocks"] == 4
     assert all(timing["stated"] for timing in facts["timing"].values())
     [triangle] = [entry for entry in facts["commands"]["opcodes"]

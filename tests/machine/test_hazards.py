@@ -52,8 +52,9 @@ def probe(monkeypatch):
 ROW = [[0.1, 5.4], [0.1, 5.6], [8.2, 5.5]]
 
 
+@pytest.mark.parametrize(("cards", "skew"), [("PM", False), ("PMM", True)])
 @pytest.mark.parametrize("order", ["front to back", "back to front", "shuffled"])
-def test_no_update_is_lost_on_one_pixel(probe, order):
+def test_no_update_is_lost_on_one_pixel(probe, order, cards, skew):
     source = np.random.default_rng(4)
     depth = np.sort(source.integers(0, 4000, 60))
     if order == "back to front":
@@ -64,11 +65,11 @@ def test_no_update_is_lost_on_one_pixel(probe, order):
     depth_of = np.concatenate([rows[:, np.newaxis], depth.reshape(15, 4)], axis=1).ravel()
     display_list = triangles([ROW, *[PIXEL] * 4] * 15, np.repeat(depth_of, 3),
                              source.integers(0, 256, (75, 3, 3)))
-    configuration = configure(display_list, cards="PM", clocks_per_pixel=4)
+    configuration = configure(display_list, cards=cards, clocks_per_pixel=4, skew=skew)
     simulation = simulate(configuration, display_list, pysim_engine.PysimEngine(), memory_seed=1)
     check(configuration, display_list, simulation)
     assert simulation.depth[3, 2] == depth.min()
-    print(f"{order}: {probe.consecutive} consecutive hits, {probe.forwarded} forwarded")
+    print(f"{cards}, {order}: {probe.consecutive} consecutive hits, {probe.forwarded} forwarded")
     assert probe.consecutive > 0
     if order == "back to front":  # every one of them a winner
         assert probe.forwarded > 0

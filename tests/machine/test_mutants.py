@@ -4,6 +4,7 @@ import importlib
 import inspect
 import sys
 import types
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,19 +16,19 @@ FAILURES = (AssertionError, TimeoutError, RuntimeError, ValueError, IndexError)
 #: name → (module, its class, where it is used, right, wrong)
 MUTANTS = {
     "comparator takes the farther": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_lane", "DepthLane", ["depth_test"],
         "compare.depth < nearest", "compare.depth > nearest"),
     "comparator lets ties replace": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_lane", "DepthLane", ["depth_test"],
         "compare.depth < nearest", "compare.depth <= nearest"),
     "comparison without forwarding": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_lane", "DepthLane", ["depth_test"],
         "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
     "a winner written last is forgotten too soon": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_lane", "DepthLane", ["depth_test"],
         "has_written.eq(1)", "has_written.eq(0)"),
     "a winner written last is remembered too long": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_lane", "DepthLane", ["depth_test"],
         "m.d.sync += has_written.eq(0)", "pass"),
     "depth of the span's first pixel all along": (
         "fragment_stepper", "FragmentStepper", ["processing_element"],
@@ -239,3 +240,41 @@ def test_skewed_mutant_is_caught(monkeypatch, name):
     mutate(monkeypatch, *MUTANTS_SKEWED[name])
     with pytest.raises(FAILURES):
         check_skewed()
+
+
+#: And of the two lanes that share the lines to one-port units.
+MUTANTS_OF_LANES = {
+    "fragments of a pixel in either lane": (
+        "depth_test", "DepthTest", ["processing_element"],
+        "fragment.unit[0] == number", "fragment.depth[0] == number"),
+    "both lanes write at once": (
+        "depth_test", "DepthTest", ["processing_element"],
+        " | (writer != number)", ""),
+    "both lanes read at once": (
+        "depth_test", "DepthTest", ["processing_element"],
+        " | (reader != number)", ""),
+    "comparison without forwarding": (
+        "depth_lane", "DepthLane", ["depth_test"],
+        "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
+    "a winner written last is not looked at": (
+        "depth_lane", "DepthLane", ["depth_test"],
+        "has_written.eq(1)", "has_written.eq(0)"),
+}
+
+
+def check_lanes():
+    """Rows twice in a row, with even and with odd depths."""
+    rows = spans_twice(8, 6, seed=2)
+    depth = rows.depth + np.arange(len(rows.depth))[:, np.newaxis] % 2
+    draw(replace(rows, depth=depth), cards="PMM", skew=True, seed=4)
+
+
+def test_the_machine_itself_passes_in_lanes():
+    check_lanes()
+
+
+@pytest.mark.parametrize("name", MUTANTS_OF_LANES)
+def test_mutant_of_lanes_is_caught(monkeypatch, name):
+    mutate(monkeypatch, *MUTANTS_OF_LANES[name])
+    with pytest.raises(FAILURES):
+        check_lanes()

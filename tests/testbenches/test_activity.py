@@ -23,7 +23,7 @@ from cardcage.testbenches.simulation import frame_job
 from cardcage.testbenches.verilator_engine import VerilatorEngine
 from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
 
-LIST = make_display_list("random:n=25,size=9,seed=3", width=16, height=12).display_list
+LIST = make_display_list("random:n=25,size=20,seed=3", width=16, height=12).display_list
 PLAIN = configure(LIST, cards="PMPMMM", clocks_per_pixel=2)
 OBSERVED = replace(PLAIN, observe=True)
 

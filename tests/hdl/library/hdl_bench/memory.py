@@ -11,13 +11,16 @@ class MemoryLines(Agent):
     A unit's one port goes to the scan, else to the write, else to the read.  The
     scan takes each unit's port with probability ``scan``, drawn anew every
     clock.  With two ports nobody waits, and what a read sees of the write of its own
-    clock is drawn anew.  Contents start out random.
+    clock is drawn anew.  With probability ``refused`` the lines are somebody else's to
+    write, and to read, and the unit knows nothing of the request.  Contents start out
+    random.
 
     ``depth``, ``back``   dicts (unit, address) → word
     ``reads``, ``writes`` lists of (clock, unit, address)
     """
 
-    def __init__(self, lines, *, first, end, words, depth_bits, seed=0, scan=0.0, ports=1):
+    def __init__(self, lines, *, first, end, words, depth_bits, seed=0, scan=0.0, ports=1,
+                 refused=0.0):
         self._lines = lines
         self._source = random.Random(f"memory {seed}")
         self._scan = scan
@@ -29,6 +32,7 @@ class MemoryLines(Agent):
             for bits in (depth_bits, 24))
         self._background = (1 << depth_bits) - 1
         self._ports = ports
+        self._refused = refused
         self.reads, self.writes = [], []
         self._answer = 0
         self._clock = 0
@@ -45,13 +49,15 @@ class MemoryLines(Agent):
         if self._ports == 2:
             self._write_busy = self._read_busy = False
             return
+        ctx.set(lines.scanned, sum(1 << parity for parity in {unit & 1 for unit in scanned}))
+        no_write, no_read = (port.random() < self._refused for _ in range(2))
         # A read may wait for the write, not the other way round.
         write = ctx.get(lines.write)
-        self._write_busy = bool(write.valid) and write.unit in scanned
+        self._write_busy = bool(write.valid) and (write.unit in scanned or no_write)
         ctx.set(lines.write_busy, self._write_busy)
         read = ctx.get(lines.read)
-        written = {write.unit} & set(self._units) if write.valid else set()
-        self._read_busy = bool(read.valid) and read.unit in (scanned | written)
+        written = {write.unit} & set(self._units) if write.valid and not no_write else set()
+        self._read_busy = bool(read.valid) and (read.unit in (scanned | written) or no_read)
         ctx.set(lines.read_busy, self._read_busy)
 
     def sample(self, ctx):
