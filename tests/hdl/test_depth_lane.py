@@ -26,12 +26,12 @@ def random_fragments(seed, count, *, units, places, depths):
             for number in range(1, count + 1)]
 
 
-def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None, ports=1,
+def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None,
         refused=0.0):
     """Returns the bench's parts, and the fragments that had to be written, in order."""
     dut = DepthLane(configuration=CONFIGURATION)
     memory = MemoryLines(dut.memory, first=0, end=units, words=WORDS,
-                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan, ports=ports,
+                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan,
                          refused=refused)
     if background is not None:
         memory.depth = dict.fromkeys(memory.depth, background)
@@ -63,15 +63,15 @@ def run(fragments, *, units, pause=no_pause, scan=0.0, seed=0, background=None, 
     return source, memory, sum(forwarded)
 
 
-@pytest.mark.parametrize(("scan", "ports", "refused"), [
-    (0.0, 1, 0.0), (0.3, 1, 0.0), (0.8, 1, 0.0), (0.0, 2, 0.0), (0.0, 1, 0.5), (0.3, 1, 0.3)])
+@pytest.mark.parametrize(("scan", "refused"), [
+    (0.0, 0.0), (0.3, 0.0), (0.8, 0.0), (0.0, 0.5), (0.3, 0.3)])
 @pytest.mark.parametrize("units", [1, 2, 4])
 @pytest.mark.parametrize("seed", range(2))
-def test_random_fragments(seed, units, scan, ports, refused):
+def test_random_fragments(seed, units, scan, refused):
     fragments = random_fragments(f"{seed} {units} {scan}", 250, units=units, places=2 * units,
                                  depths=256)
     _, memory, _ = run(fragments, units=units, pause=pauses(seed), scan=scan, seed=seed,
-                       ports=ports, refused=refused)
+                       refused=refused)
     assert memory.writes
 
 
@@ -97,10 +97,8 @@ def test_one_pixel_in_consecutive_clocks(seed, scan, refused):
 
 @pytest.mark.parametrize("gap", range(1, 7))
 @pytest.mark.parametrize("between", [None, 0, 1])
-@pytest.mark.parametrize("ports", [1, 2])
-def test_the_same_pixel_after_every_number_of_clocks(gap, between, ports):
-    """On one pixel and two, ever nearer or farther: with two ports also in the very clock in which
-    the winner is written, while another one follows it."""
+def test_the_same_pixel_after_every_number_of_clocks(gap, between):
+    """On one pixel and two, ever nearer or farther."""
     fragments = []
     for step in range(30):
         depth = 250 - 8 * step if step < 20 else 8 * step
@@ -117,15 +115,7 @@ def test_the_same_pixel_after_every_number_of_clocks(gap, between, ports):
         else:
             waits.append(0)
     run([item for item in fragments if item is not None], units=1, background=253,
-        pause=iter(waits).__next__, ports=ports)
-
-
-def test_with_two_ports_one_unit_takes_a_visible_fragment_a_clock():
-    fragments = [fragment(0, index, 5, index) for index in range(WORDS)]
-    source, memory, _ = run(fragments, units=1, background=255, ports=2)
-    assert source.taken == list(range(WORDS))
-    assert [write[0] for write in memory.writes] == [clock + DepthLane.latency
-                                                     for clock in source.taken]
+        pause=iter(waits).__next__)
 
 
 def test_ties_keep_the_first():
