@@ -85,7 +85,7 @@ class PlaneSetup(wiring.Component):
     done: Out(1)
         High for one clock with each result.
     result: Out(word_bits)
-        As ``golden.setup.Planes`` has it.
+        As ``golden.setup.Planes`` has it, modulo 2**word_bits.
     """
 
     def __init__(self, *, configuration: MachineConfiguration, value_bits: int, word_bits: int):

@@ -51,7 +51,8 @@ class ReadBack(wiring.Component):
         memory, depths = self.memory, self.depths
         unit = Signal.like(self.first)
         address = Signal(self.configuration.address_bits)
-        last, again = Signal(), Signal()  # this address is the last one; the next is the first
+        # This address is the last one; the next one is the first.
+        last, again = Signal(name="last"), Signal(name="again")
         answering = Signal()  # the answer is on the lines in this clock only
         free = ~answering & (~depths.valid | depths.ready)
         m.d.comb += [

@@ -75,9 +75,16 @@ CONFIGURATIONS = {
     "flat": preset("tiny", shading="flat"),
     "coarse fractions": MachineConfiguration("PM", 300, 40, sub_bits=3, depth_bits=16,
                                              fraction_bits=0),
+    "guard": MachineConfiguration("PM", 16, 17, fraction_bits=6),
+    "no guard": MachineConfiguration("PM", 16, 17, fraction_bits=7),
     "flat, least": MachineConfiguration("PM", 1, 1, sub_bits=1, depth_bits=2, fraction_bits=0,
                                         shading="flat"),
 }
+
+
+def test_some_machines_have_guard_bits_and_some_have_none():
+    assert {name for name, machine in CONFIGURATIONS.items() if machine.stays_in_range} == {
+        "tiny", "paper", "flat", "no guard"}
 
 
 @pytest.mark.parametrize("name", CONFIGURATIONS)
@@ -88,6 +95,8 @@ def test_width_formulas(name):
 
     def guard(v):
         g = 0
+        if 2 * (width + height - 1) < 2**fraction:
+            return g
         while 2**v + ceil((width + height - 1) / 2 ** (fraction + 1)) > 2 ** (v + g - 1):
             g += 1
         return g

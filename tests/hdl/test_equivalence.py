@@ -91,7 +91,9 @@ def test_equivalent(tmp_path, name):
 @pytest.mark.parametrize(("name", "right", "wrong"), [
     ("id_increment", r"left \+ 3'h1", "left + 3'h3"),
     ("depth_lane", r" < ", " <= "),
-    ("edge_columns", r"long_start \+ ", "long_start - "),
+    ("two_port_depth_test", r" < ", " <= "),
+    ("interpolator", r"depth_start_3 \+ ", "depth_start_3 - "),
+    ("edge_columns", r"long_start_1 \+ ", "long_start_1 - "),
     ("survey", r"<= (_\d+_);", r"<= ~\1;"),
     ("response_link", r"left__payload <=", "left__payload <= ~"),
     ("video_scan_generator", r"assign (\S+) = (\S+) \? (\S+) : (\S+);",

@@ -46,9 +46,9 @@ def test_every_kind_of_cell_is_saved(plans, capsys):
 
 
 def color_interpolators(configuration):
-    """Names in the Verilog that are the red channel's start, increments or products."""
+    """Names in the Verilog that are the red channel's start, products or sums."""
     text = component_verilog(ProcessingElement(configuration=configuration), "element")
-    return set(re.findall(r"\bred_(?:start|step|stride|sum|x|y)\w*", text))
+    return set(re.findall(r"\bred_(?:start|steps|limb|value|x|y)\w*", text))
 
 
 def test_a_flat_netlist_has_no_color_interpolator(plans):

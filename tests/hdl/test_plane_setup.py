@@ -62,7 +62,9 @@ def run(configuration, slots, interpolant, seed, gap=lambda: 0):
     results = Results(dut.done, dut.result, len(slots))
     simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.grid, grid)), starts, results,
              after=dut.latency + 3, limit=60_000)
-    assert results.values == [result for _, result in slots]
+    # golden.setup keeps some bits above those that this machine carries.
+    mask = (1 << dut.word_bits) - 1
+    assert results.values == [result & mask for _, result in slots]
     # In time, whatever the pauses between them.
     assert results.clocks == [clock + dut.latency for clock in starts.clocks]
     return dut, starts

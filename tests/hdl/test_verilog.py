@@ -8,8 +8,8 @@ from hdl_bench.verilog_tools import icarus, verilator_lint, yosys
 from cardcage.golden.configuration import preset
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.description import component_for, describe
-from cardcage.hdl.fragment_stepper import fragment_layout
-from cardcage.hdl.layouts import operation_layout, planes_layout, span_layout
+from cardcage.hdl.interpolator import fragment_layout
+from cardcage.hdl.layouts import planes_layout, span_layout, walked_outline_layout
 from cardcage.hdl.members import described_ports
 from cardcage.hdl.verilog import component_ports, component_verilog, machine_verilog
 from cardcage.testbenches.export import COMPONENT_NAMES, WAIVERS
@@ -145,16 +145,23 @@ def test_description(texts):
                                   {"name": "value", "offset": 8, "width": 32}]
     formats = {entry["name"]: entry for entry in facts["number_formats"]}
     assert formats["depth_plane"]["bits"] == configuration.depth_plane_bits
-    assert formats["depth_plane"]["fraction_bits"] == 50 and formats["depth_plane"]["signed"]
+    assert formats["depth_plane"]["fraction_bits"] == 50
+    # Of no more fraction bits than are needed, and nothing to tell too low from too high.
+    assert not formats["depth_plane"]["signed"]
+    assert formats["depth_plane"]["integer_bits"] == configuration.depth_bits
     assert formats["vertex_coordinate"]["integer_bits"] == configuration.coordinate_bits - 8
-    # In each processing element, fragments before each of two lanes.
-    layouts = {operation_layout: 1, span_layout: 1, planes_layout: 1, fragment_layout: 2}
-    assert {memory.pop("module"): memory for memory in facts["memories"]} == {
-        "memory_16384x84_lanes_3_no_rw_check": {
-            "words": 16384, "bits": 84, "instances": 16, "contents_at_power_on": "unknown"},
-        **{f"memory_15x{layout(configuration).size}": {
-            "words": 15, "bits": layout(configuration).size, "instances": 4 * each,
-            "contents_at_power_on": "unknown"} for layout, each in layouts.items()}}
+    kept, spans = walked_outline_layout(configuration), span_layout(configuration)
+    memories = {"memory_16384x84_lanes_3_no_rw_check": 16,
+                f"memory_15x{kept.size}": 4, f"memory_15x{planes_layout(configuration).size}": 4,
+                # Before each of two lanes.
+                f"memory_15x{fragment_layout(configuration).size}": 8,
+                # Its read is not clocked: look-up tables, not block RAM.
+                f"memory_16x{spans.size}_asynchronous_read": 4}
+    assert {memory["module"]: memory["instances"] for memory in facts["memories"]} == memories
+    for memory in facts["memories"]:
+        words, bits = re.match(r"memory_(\d+)x(\d+)", memory["module"]).groups()
+        assert (memory["words"], memory["bits"]) == (int(words), int(bits))
+        assert memory["contents_at_power_on"] == "unknown"
     assert facts["timing"]["video_scan_generator"]["latency_clocks"] == 4
     assert all(timing["stated"] for timing in facts["timing"].values())
     [triangle] = [entry for entry in facts["commands"]["opcodes"]
