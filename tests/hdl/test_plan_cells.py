@@ -41,7 +41,7 @@ def test_every_kind_of_cell_is_saved(plans, capsys):
         assert cells.multipliers < full.multipliers
         assert cells.memory < full.memory
     # A flat scene saves most; the fragments that wait, of all machines alike, are not its gain.
-    assert counted["flat"].total < 0.53 * full.total
+    assert counted["flat"].total < 0.55 * full.total
     assert counted["flat"].multipliers < full.multipliers / 3
 
 

@@ -61,7 +61,7 @@ def test_no_update_is_lost_on_one_pixel(probe, order, cards, skew):
         depth = depth[::-1]
     elif order == "shuffled":
         source.shuffle(depth)
-    rows = np.arange(4000, 4000 - 15, -1)  # each of them visible
+    rows = np.arange(4000, 4000 + 15)  # all but the first hidden: no write of theirs comes between
     depth_of = np.concatenate([rows[:, np.newaxis], depth.reshape(15, 4)], axis=1).ravel()
     display_list = triangles([ROW, *[PIXEL] * 4] * 15, np.repeat(depth_of, 3),
                              source.integers(0, 256, (75, 3, 3)))

@@ -65,9 +65,8 @@ MUTANTS = {
         "id_increment", "IdIncrement", ["memory_unit"],
         "self.left + 1", "self.left + 2"),
     "scan slot ignored: the element has the port": (
-        "memory_unit", "MemoryUnit", ["machine"],
-        "access.scan.eq(scan_read)",
-        "access.scan.eq(scan_read & ~access.write & ~access.read)"),
+        "one_port_memory", "OnePortMemory", ["memory_unit"],
+        "with m.If(access.scan):", "with m.If(access.scan & ~access.write & ~access.read):"),
     "busy not shown to a read in a scan slot": (
         "memory_unit", "MemoryUnit", ["machine"],
         "read_here & access.read_busy)", "read_here & access.write)"),

@@ -76,7 +76,7 @@ def test_memories_are_random_at_power_on():
     text = verilog.machine_verilog(CONFIGURATION)
     text, count = re.subn(r"(write_enable\[[12]\])(\) words\S+:(28|56)\])",
                           r"\1 && write_data[\3 +: 4] != 0\2", text)
-    text, also = re.subn(r"\w+ \? (shown\[27:4\]) : pictures__background;", r"\1;", text)
+    text, also = re.subn(r"= shown\[3:0\] == shown_tag;", "= 1'h1;", text)
     assert (count, also) == (2, 1)
     engine = VerilatorEngine(verilog=text)
     first, second, zero = (simulate(CONFIGURATION, LIST, engine, memory_seed=seed).video
@@ -100,9 +100,9 @@ def test_a_model_is_built_once(engine, cache):
 
 
 def patched(right, wrong):
-    """An engine for the machine's Verilog with one thing changed."""
+    """An engine for the machine's Verilog with one thing changed, wherever a module has it."""
     text = verilog.machine_verilog(CONFIGURATION)
-    assert text.count(right) == 1
+    assert right in text
     return VerilatorEngine(verilog=text.replace(right, wrong))
 
 
