@@ -82,14 +82,13 @@ MUTANTS = {
         "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left)", "self.erase.eq(Mux(everything, 0, left))"),
+        "self.erase.eq(left & ~taken)", "self.erase.eq(Mux(everything, 0, left & ~taken))"),
     "old tags are not swept out": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left)", "self.erase.eq(Mux(everything, left, 0))"),
-    "passes stop a word early": (
+        "self.erase.eq(left & ~taken)", "self.erase.eq(Mux(everything, left & ~taken, 0))"),
+    "passes stop half way": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.address == self.configuration.words - 1",
-        "self.address == self.configuration.words - 2"),
+        "self.address == words - 1", "self.address[:-1] == words // 2 - 1"),
     "depths of all frames are compared": (
         "memory_unit", "MemoryUnit", ["machine"],
         "access.depth.tag == pictures.depth_tag", "access.depth.tag != 0"),
