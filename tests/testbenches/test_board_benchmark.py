@@ -124,6 +124,7 @@ def test_machines_are_exact_for_every_triangle(placed):
     assert len({part.origin for part in placed}) == len(BOARDS)
 
 
+@pytest.mark.skipif(missing_tools() is not None, reason=str(missing_tools()))
 def test_table_and_json(placed):
     done = run("--boards", "domain,setup-fast", *TINY, "--json", "boards.json")
     assert done.exit_code == 0, done.output
