@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_AGAIN_SECONDS = 0.01
 
 
 class Interrupted(BaseException):
@@ -41,12 +44,36 @@ def _handlers(handler: object) -> Iterator[None]:
 
 
 @contextmanager
+def _again_if_swallowed() -> Iterator[None]:
+    # Where a signal falls into a finaliser or a weak reference's callback, Python prints the
+    # exception and goes on. The signal is sent again a little later, when the program is elsewhere.
+    before = sys.unraisablehook
+    timers: list[threading.Timer] = []
+
+    def hook(swallowed: sys.UnraisableHookArgs) -> None:
+        if not isinstance(swallowed.exc_value, Interrupted):
+            before(swallowed)
+            return
+        number = swallowed.exc_value.status - 128
+        timers.append(threading.Timer(_AGAIN_SECONDS, os.kill, (os.getpid(), number)))
+        timers[-1].start()
+
+    sys.unraisablehook = hook
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+        for timer in timers:
+            timer.cancel()
+
+
+@contextmanager
 def interruptible() -> Iterator[None]:
     """Within, SIGINT and SIGTERM raise ``Interrupted``; no effect outside the main thread."""
     if not _in_main_thread():
         yield
         return
-    with _handlers(_raise):
+    with _again_if_swallowed(), _handlers(_raise):
         yield
 
 

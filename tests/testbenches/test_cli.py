@@ -309,17 +309,18 @@ def test_interrupted(place, number, status):
     Path("report").mkdir()
     Path("report/report.html").write_text("the last one")
     before = listing()
-    process = subprocess.Popen([*COMMAND, *LONG, "--out", "report", "--waveform", "wave.vcd"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    try:
-        deadline = time.monotonic() + 60
-        while not (list(Path("report").glob(".cardcage-*")) and list(Path().glob(".cardcage-*"))):
-            assert process.poll() is None and time.monotonic() < deadline
-            time.sleep(0.05)
-        process.send_signal(number)
-        output, errors = process.communicate(timeout=60)
-    finally:
-        process.kill()
+    with subprocess.Popen([*COMMAND, *LONG, "--out", "report", "--waveform", "wave.vcd"],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            deadline = time.monotonic() + 60
+            while not (list(Path("report").glob(".cardcage-*"))
+                       and list(Path().glob(".cardcage-*"))):
+                assert process.poll() is None and time.monotonic() < deadline
+                time.sleep(0.05)
+            process.send_signal(number)
+            output, errors = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert process.returncode == status
     assert output == ""
     assert "Traceback" not in errors
