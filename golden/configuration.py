@@ -7,17 +7,12 @@ from typing import Any, Literal
 
 from .cards import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
 from .display_list import DisplayList, coordinate_bits
+from .edge_widths import edge_column_bits, edge_fraction_bits, edge_remainder_bits
 from .errors import InputError
 from .fixed import MAX_FRACTION_BITS, guard_bits, stays_in_range
 from .interlace import Interlace, interlace_for
 from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
-from .setup import (
-    COLOR_BITS,
-    edge_column_bits,
-    edge_fraction_bits,
-    edge_remainder_bits,
-    scene_fraction_bits,
-)
+from .setup import COLOR_BITS, scene_fraction_bits
 from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 

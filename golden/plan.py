@@ -9,11 +9,11 @@ from . import bit_true
 from .commands import layout_bits, prepared_triangle_layout
 from .configuration import MachineConfiguration
 from .display_list import DisplayList
+from .edge_widths import fewest_edge_fraction_bits
 from .errors import InputError
 from .fixed import MAX_FRACTION_BITS, exact_fraction_bits
 from .ranges import check_whole
 from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
-from .setup import fewest_edge_fraction_bits
 
 #: What a processing element holds in waiting where there is enough to hold.
 FIFO_DEPTH = MachineConfiguration.fifo_depth

@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from .bit_true import error_bound
 from .configuration import MachineConfiguration
 from .display_list import DisplayList
+from .edge_widths import fewest_edge_fraction_bits
 from .errors import InputError
 from .fixed import exact_fraction_bits
 from .grid import Grid
-from .setup import Edges, Outlines, fewest_edge_fraction_bits, outline
+from .setup import Edges, Outlines, outline
 
 Int64 = NDArray[np.int64]
 

@@ -28,10 +28,6 @@ from numpy.typing import NDArray
 
 from . import fixed
 from .display_list import DisplayList
-from .edge_widths import edge_column_bits as edge_column_bits
-from .edge_widths import edge_fraction_bits as edge_fraction_bits
-from .edge_widths import edge_remainder_bits as edge_remainder_bits
-from .edge_widths import fewest_edge_fraction_bits as fewest_edge_fraction_bits
 from .grid import Grid
 from .shading import Shading, shading_for
 

@@ -1,4 +1,4 @@
-"""Makes ``library/`` importable: the test modules share how edges are stepped in ``edge_steps``."""
+"""Makes ``library/`` importable: what several test modules share."""
 
 import sys
 from pathlib import Path

@@ -11,15 +11,13 @@ from edge_steps import carried_columns, stepped_columns
 from cardcage.golden import bit_true, exact, fixed
 from cardcage.golden.coverage import Triangles
 from cardcage.golden.display_list import DisplayList, coordinate_bits
+from cardcage.golden.edge_widths import edge_column_bits, edge_fraction_bits, edge_remainder_bits
 from cardcage.golden.grid import Grid
 from cardcage.golden.setup import (
     Planes,
     carry_edges,
     color_word_bits,
     depth_word_bits,
-    edge_column_bits,
-    edge_fraction_bits,
-    edge_remainder_bits,
     prepare,
     scene_fraction_bits,
 )

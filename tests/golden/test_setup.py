@@ -8,6 +8,12 @@ from edge_steps import carried_columns, stepped_columns
 
 from cardcage.golden import exact
 from cardcage.golden.display_list import DisplayList, coordinate_bits
+from cardcage.golden.edge_widths import (
+    edge_column_bits,
+    edge_fraction_bits,
+    edge_remainder_bits,
+    fewest_edge_fraction_bits,
+)
 from cardcage.golden.errors import InputError
 from cardcage.golden.fixed import to_signed
 from cardcage.golden.setup import (
@@ -15,10 +21,6 @@ from cardcage.golden.setup import (
     carry_edges,
     color_word_bits,
     depth_word_bits,
-    edge_column_bits,
-    edge_fraction_bits,
-    edge_remainder_bits,
-    fewest_edge_fraction_bits,
     prepare,
     scene_fraction_bits,
 )
