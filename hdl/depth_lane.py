@@ -1,11 +1,10 @@
 """The Z-buffer comparison: read, compare, write, without a lost update (figure 3)."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib import wiring
 
 from ..golden.configuration import MachineConfiguration
-from .backplane import ProcessingElementLines
+from .depth_test_signature import DepthTestSignature
 from .interpolator import fragment_layout
 
 __all__ = ["DepthLane"]
@@ -29,26 +28,14 @@ class DepthLane(wiring.Component):
     a fragment a clock while its unit has the port: on one unit each visible
     fragment takes two accesses, two units in turn take one a clock.
 
-    Members
-    -------
-    fragments: In(stream of fragment_layout)
-    memory: Out(ProcessingElementLines)
-    busy: Out(1)
-        Holds a fragment.
-    forwarded: Out(1)
-        In this clock a comparison used the last or the waiting winner, not the answer.
+    Members: those of ``DepthTestSignature``.
     """
 
     latency = 3
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        super().__init__({
-            "fragments": In(stream.Signature(fragment_layout(configuration))),
-            "memory": Out(ProcessingElementLines(configuration)),
-            "busy": Out(1),
-            "forwarded": Out(1),
-        })
+        super().__init__(DepthTestSignature(configuration))
 
     def elaborate(self, platform):
         m = Module()

@@ -1,14 +1,12 @@
 """The Z-buffer comparison of one-port memories: two lanes share the lines (figure 3)."""
 
 from amaranth.hdl import *
-from amaranth.lib import fifo, stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib import fifo, wiring
 
 from ..golden.configuration import MachineConfiguration
 from ..golden.lanes import FRAGMENTS_WAITING, depth_lanes
-from .backplane import ProcessingElementLines
 from .depth_lane import DepthLane
-from .interpolator import fragment_layout
+from .depth_test_signature import DepthTestSignature
 
 __all__ = ["DepthTest"]
 
@@ -30,26 +28,14 @@ class DepthTest(wiring.Component):
     fragment to its read.  Throughput: a fragment a clock while the ports of even and
     odd units have as many accesses; on one unit two clocks for a visible one.
 
-    Members
-    -------
-    fragments: In(stream of fragment_layout)
-    memory: Out(ProcessingElementLines)
-    busy: Out(1)
-        Holds a fragment.
-    forwarded: Out(1)
-        In this clock a comparison used a winner on its way, not the answer.
+    Members: those of ``DepthTestSignature``.
     """
 
     latency = DepthLane.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        super().__init__({
-            "fragments": In(stream.Signature(fragment_layout(configuration))),
-            "memory": Out(ProcessingElementLines(configuration)),
-            "busy": Out(1),
-            "forwarded": Out(1),
-        })
+        super().__init__(DepthTestSignature(configuration))
 
     @property
     def lanes(self) -> int:

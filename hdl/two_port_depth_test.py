@@ -1,11 +1,10 @@
 """The Z-buffer comparison on units with two ports, where nothing ever waits (figure 3)."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib import wiring
 
 from ..golden.configuration import MachineConfiguration
-from .backplane import ProcessingElementLines
+from .depth_test_signature import DepthTestSignature
 from .interpolator import fragment_layout
 
 __all__ = ["TwoPortDepthTest"]
@@ -25,17 +24,8 @@ class TwoPortDepthTest(wiring.Component):
     Latency: ``latency`` clocks from a fragment's read to its write.  Throughput:
     a fragment a clock, visible or not.
 
-    Members
-    -------
-    fragments: In(stream of fragment_layout)
-        Always ready.
-    memory: Out(ProcessingElementLines)
-        Its busy lines are not looked at.  The write address is 0 from a clock after the last
-        ``busy`` one on.
-    busy: Out(1)
-        Holds a fragment.
-    forwarded: Out(1)
-        In this clock a depth that was on its way to the memory is taken in place of the answer.
+    Members: those of ``DepthTestSignature``.  ``fragments`` is always ready, the memory's busy
+    lines are not looked at.
     """
 
     latency = 3
@@ -43,12 +33,7 @@ class TwoPortDepthTest(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        super().__init__({
-            "fragments": In(stream.Signature(fragment_layout(configuration))),
-            "memory": Out(ProcessingElementLines(configuration)),
-            "busy": Out(1),
-            "forwarded": Out(1),
-        })
+        super().__init__(DepthTestSignature(configuration))
 
     def elaborate(self, platform):
         m = Module()

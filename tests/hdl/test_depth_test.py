@@ -3,10 +3,14 @@
 import random
 
 import pytest
-from hdl_bench.bench import Watch, simulate
-from hdl_bench.memory import MemoryLines
+from hdl_bench.depth_tests import (
+    DepthTestRun,
+    fragment,
+    on_few_pixels,
+    sees_a_clear_in_between,
+)
 from hdl_bench.pictures import small_machine
-from hdl_bench.streams import Source, no_pause, pauses
+from hdl_bench.streams import pauses
 
 from cardcage.hdl.depth_test import DepthTest
 
@@ -14,41 +18,18 @@ CONFIGURATION = small_machine("PMMMM", 16, 16)
 WORDS = CONFIGURATION.words
 
 
-def fragment(unit, address, depth, color):
-    return {"unit": unit, "address": address, "depth": depth, "color": color}
+class Run(DepthTestRun):
+    """In order in each lane.  ``clocks`` are those from the first fragment to the last access."""
 
-
-class Run:
-    """Draws ``fragments``, and compares memory and order with a dictionary."""
-
-    def __init__(self, fragments, *, units, configuration=CONFIGURATION, pause=no_pause, scan=0.0,
-                 seed=0, background=None):
+    def __init__(self, fragments, *, configuration=CONFIGURATION, **settings):
         self.dut = dut = DepthTest(configuration=configuration)
-        self.memory = memory = MemoryLines(
-            dut.memory, first=0, end=units, words=configuration.words,
-            depth_bits=configuration.depth_bits, seed=seed, scan=scan)
-        if background is not None:
-            memory.depth = dict.fromkeys(memory.depth, background)
-        depth, color, winners = dict(memory.depth), dict(memory.back), []
-        for item in fragments:
-            place = item["unit"], item["address"]
-            if item["depth"] < depth[place]:
-                depth[place], color[place] = item["depth"], item["color"]
-                winners.append(place)
-        self.source = Source(dut.fragments, fragments, pause)
-        self.forwarded, busy = 0, []
-
-        def look(ctx, clock):
-            self.forwarded += ctx.get(dut.forwarded)
-            busy.append(ctx.get(dut.busy))
-
-        simulate(dut, self.source, memory, Watch(look), after=12 * 40)
-        assert memory.depth == depth
-        assert memory.back == color
-        for parity in range(2):  # in order in each lane
+        super().__init__(dut, fragments, after=12 * 40, **settings)
+        memory, busy = self.memory, self.busy
+        places = [(item["unit"], item["address"]) for item in fragments]
+        for parity in range(2):
             for accesses, wanted in (
-                    (memory.reads, [(item["unit"], item["address"]) for item in fragments]),
-                    (memory.writes, winners)):
+                    (memory.reads, places),
+                    (memory.writes, [places[number] for number in self.winners])):
                 assert [place[1:] for place in accesses if place[1] % 2 == parity] == [
                     place for place in wanted if place[0] % 2 == parity]
         accesses = [access[0] for access in memory.reads + memory.writes]
@@ -76,12 +57,9 @@ def test_two_lanes_where_a_processing_element_has_several_units(cards):
 @pytest.mark.parametrize("units", [1, 2, 4])
 @pytest.mark.parametrize("seed", range(2))
 def test_random_fragments_on_few_pixels(seed, units, scan, cards):
-    """Pixels repeat at once and ties are common; a card of one lane may find more units, too."""
+    """A card of one lane may find more units, too."""
     configuration = small_machine(cards, 16, 16, maximum_units=4, words=64)
-    pick = random.Random(f"fragments {seed} {units} {scan}")
-    chosen = [(pick.randrange(units), pick.randrange(64)) for _ in range(2 * units)]
-    fragments = [fragment(*pick.choice(chosen), pick.randrange(256), number)
-                 for number in range(250)]
+    fragments = on_few_pixels(f"{seed} {units} {scan}", 250, units=units, words=64)
     run = Run(fragments, units=units, configuration=configuration, pause=pauses(seed), scan=scan,
               seed=seed)
     assert run.memory.writes
@@ -148,20 +126,4 @@ def test_units_of_one_lane_take_a_visible_fragment_a_clock():
 
 
 def test_a_clear_in_between_is_seen():
-    """Once it is not busy, what it wrote is forgotten: the memory may be cleared."""
-    dut = DepthTest(configuration=CONFIGURATION)
-    memory = MemoryLines(dut.memory, first=0, end=2, words=WORDS,
-                         depth_bits=CONFIGURATION.depth_bits)
-    memory.depth = dict.fromkeys(memory.depth, 255)
-    source = Source(dut.fragments, [fragment(1, 4, 10, 1), fragment(1, 4, 200, 2)], lambda: 12)
-    idle = []
-
-    def clear(ctx, clock):
-        if len(memory.writes) == 1 and not ctx.get(dut.busy):
-            if not idle:
-                memory.depth[1, 4] = 255
-            idle.append(clock)
-
-    simulate(dut, source, memory, Watch(clear), after=16)
-    assert idle
-    assert (memory.depth[1, 4], memory.back[1, 4]) == (200, 2)
+    sees_a_clear_in_between(DepthTest(configuration=CONFIGURATION), 1, 12)
