@@ -49,9 +49,10 @@ class ProcessingElement(wiring.Component):
 
     Latency: from a triangle's strobe to the read of its first fragment ``latency``
     clocks.  Throughput: a fragment a clock while ports are free: rows are found
-    ahead, at one a clock, triangle after triangle.  A visible fragment takes
-    two accesses of its unit's one port, so two clocks on one unit; on two it
-    takes one where fragments alternate between them, within the few that wait.
+    ahead, at one a clock, triangle after triangle.  Units of two ports take a
+    fragment a clock.  Of one port, a visible fragment takes two accesses, so two
+    clocks on one unit; on two it takes one where fragments alternate between them,
+    within the few that wait (``DepthTest``).
 
     Members
     -------

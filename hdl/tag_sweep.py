@@ -12,7 +12,8 @@ __all__ = ["TagSweep"]
 class TagSweep(wiring.Component):
     """A pass over every word, in clocks in which nobody else asks for the RAM.
 
-    A pass reads each word and writes tag 0 to the lanes that are stale.  What the
+    A lane is a part of the word with a tag of its own: depth, and colour of either
+    buffer.  A pass reads each word and writes tag 0 to the lanes that are stale.  What the
     processing element writes there between the two is not stale any more, and is
     left alone.  So, after a pass: no lane of any word has a tag that was not the
     lane's current one at any time since the pass began.

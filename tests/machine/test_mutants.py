@@ -184,31 +184,9 @@ def check_machine():
                      seed=6)
 
 
-def test_the_machine_itself_passes():
-    check_machine()
-
-
-@pytest.mark.parametrize("name", MUTANTS)
-def test_mutant_is_caught(monkeypatch, name):
-    mutate(monkeypatch, *MUTANTS[name])
-    with pytest.raises(FAILURES):
-        check_machine()
-
-
 def check_squares():
     simulation = draw(random_list(11, 8, width=13, height=9), cards="4x(PM)", block=2, seed=2)
     assert sum(work.fragments for work in simulation.work) > 150
-
-
-def test_the_machine_itself_passes_in_squares():
-    check_squares()
-
-
-@pytest.mark.parametrize("name", MUTANTS_IN_SQUARES)
-def test_mutant_in_squares_is_caught(monkeypatch, name):
-    mutate(monkeypatch, *MUTANTS_IN_SQUARES[name])
-    with pytest.raises(FAILURES):
-        check_squares()
 
 
 #: The same in a skewed machine of one unit each.
@@ -227,17 +205,6 @@ MUTANTS_SKEWED = {
 
 def check_skewed():
     draw(random_list(11, 20), cards="4x(PM)", skew=True, seed=2)
-
-
-def test_the_machine_itself_passes_skewed():
-    check_skewed()
-
-
-@pytest.mark.parametrize("name", MUTANTS_SKEWED)
-def test_skewed_mutant_is_caught(monkeypatch, name):
-    mutate(monkeypatch, *MUTANTS_SKEWED[name])
-    with pytest.raises(FAILURES):
-        check_skewed()
 
 
 #: And of the two lanes that share the lines to one-port units.
@@ -267,12 +234,18 @@ def check_lanes():
     draw(replace(rows, depth=depth), cards="PMM", skew=True, seed=4)
 
 
-def test_the_machine_itself_passes_in_lanes():
-    check_lanes()
+CHECKS = {check_machine: MUTANTS, check_squares: MUTANTS_IN_SQUARES, check_skewed: MUTANTS_SKEWED,
+          check_lanes: MUTANTS_OF_LANES}
 
 
-@pytest.mark.parametrize("name", MUTANTS_OF_LANES)
-def test_mutant_of_lanes_is_caught(monkeypatch, name):
-    mutate(monkeypatch, *MUTANTS_OF_LANES[name])
+@pytest.mark.parametrize("check", CHECKS)
+def test_the_machine_itself_passes(check):
+    check()
+
+
+@pytest.mark.parametrize(("check", "name"), [
+    pytest.param(check, name, id=name) for check, group in CHECKS.items() for name in group])
+def test_mutant_is_caught(monkeypatch, check, name):
+    mutate(monkeypatch, *CHECKS[check][name])
     with pytest.raises(FAILURES):
-        check_lanes()
+        check()
