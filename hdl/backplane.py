@@ -186,7 +186,7 @@ class ScanLines(wiring.Signature):
     fetch: Out(scan_address_layout)
         Announces a scan slot: a unit whose pixel is due reads it in the next clock.
     show: Out(scan_address_layout)
-        The pixel on the video bus: ``fetch`` of three clocks ago.
+        The pixel on the video bus in the next clock: ``fetch`` of three clocks ago.
     video: In(24)
         Red in the low byte, then green, blue: from the unit that holds the shown pixel, if that
         has been drawn; others drive 0 (wired or).

@@ -15,6 +15,8 @@ from .wires import wires
 
 __all__ = ["MemoryUnit"]
 
+COMPARED_BITS = 4
+
 
 class MemoryUnit(wiring.Component):
     """Depth, front and back colour of the pixels that fall to its number (figures 6 to 11).
@@ -24,14 +26,14 @@ class MemoryUnit(wiring.Component):
     processing element, else a read; whoever waits sees ``busy``.  With two nobody
     ever waits.  The scan's colour goes into an output register, which drives the
     video bus while the scan shows a pixel of this unit, so the processing element
-    has the port in the meantime.
+    has the port in the meantime.  The bus is driven from registers.
 
     Each lane of a word has a tag beside it.  One that is not the lane's current
     tag reads as background: depth 2^d - 1, and the video bus is told that nothing has
     been drawn there.  A new frame is a new tag, and no word need be cleared; clocks in which
     nobody asks for anything are used to take old tags out (``TagSweep``).
 
-    Latency: a scan fetch is on the video bus three clocks later; read data come
+    Latency: a scan fetch is on the video bus four clocks later; read data come
     one clock after the read.  Throughput: one access a clock, of whichever kind;
     with two ports a scan fetch, a read and a write.  Scan reads per line: at most
     ``Interlace.scan_reads``.
@@ -66,16 +68,23 @@ class MemoryUnit(wiring.Component):
         number = self.left.id
         m.d.comb += [increment.left.eq(number), self.right.id.eq(increment.right)]
 
-        self._scan(m, number)
-        self._serve(m, number)
-        self._sweep(m)
+        # The lanes of the word just read that are of this frame.
+        access, pictures = self.memory.access, self.pictures
+        current = Signal(3)
+        m.d.comb += current.eq(Cat(word.tag == tag for word, tag in zip(
+            (access.depth, *access.color), (pictures.depth_tag, *pictures.color_tag),
+            strict=True)))
+
+        self._scan(m, number, current[1:])
+        self._serve(m, number, current[0])
+        self._sweep(m, current)
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))
         return m
 
-    def _scan(self, m, number):
-        """Fetch, capture, drive: one clock each."""
+    def _scan(self, m, number, current):
+        """Fetch, read, capture, drive: one clock each."""
         m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
         m.submodules.show = show = ScanAddress(configuration=self.configuration)
         access, pictures = self.memory.access, self.pictures
@@ -88,10 +97,8 @@ class MemoryUnit(wiring.Component):
                 address.total.eq(self.total), address.id.eq(number),
                 address.x.eq(line.x), address.y.eq(line.y),
             ]
-        scan.d.comb += [
-            self.scan.drawn.eq(show.selected & drawn),
-            self.scan.video.eq(Mux(self.scan.drawn, output, 0)),
-        ]
+        shown = show.selected & drawn
+        scan.d.sync += [self.scan.drawn.eq(shown), self.scan.video.eq(Mux(shown, output, 0))]
         scan_read = Signal()
         scan_address = Signal(self.configuration.address_bits)
         m.d.sync += [
@@ -101,15 +108,12 @@ class MemoryUnit(wiring.Component):
         ]
         m.d.comb += [access.scan.eq(scan_read), access.scan_address.eq(scan_address)]
         with m.If(captured):
-            color, tag = (Signal(access.color[0].shape(), name="shown"),
-                          Signal.like(pictures.depth_tag, name="shown_tag"))
-            m.d.comb += [
-                color.eq(Mux(pictures.front, access.color[1], access.color[0])),
-                tag.eq(Mux(pictures.front, pictures.color_tag[1], pictures.color_tag[0])),
+            m.d.sync += [
+                output.eq(Mux(pictures.front, access.color[1].value, access.color[0].value)),
+                drawn.eq(Mux(pictures.front, current[1], current[0])),
             ]
-            m.d.sync += [output.eq(color.value), drawn.eq(color.tag == tag)]
 
-    def _serve(self, m, number):
+    def _serve(self, m, number, current):
         """What the processing element asks for, and its answer."""
         lines, onward = self.left.lines, self.right.lines
         write, read = lines.write, lines.read
@@ -137,16 +141,14 @@ class MemoryUnit(wiring.Component):
             access.read.eq(read_here),
             access.read_address.eq(read.address),
             lines.read_busy.eq(onward.read_busy | (read_here & access.read_busy)),
-            answer.eq(Mux(access.depth.tag == pictures.depth_tag, access.depth.value,
-                          self.configuration.depth_background)),
+            answer.eq(Mux(current, access.depth.value, self.configuration.depth_background)),
             lines.read_data.eq(onward.read_data | Mux(answered, answer, 0)),
         ]
         m.d.sync += answered.eq(read_here & ~access.read_busy)
 
-    def _sweep(self, m):
+    def _sweep(self, m, current):
         m.submodules.tag_sweep = sweep = TagSweep(configuration=self.configuration)
         access, pictures = self.memory.access, self.pictures
-        current = (pictures.depth_tag, *pictures.color_tag)
         m.d.comb += [
             sweep.start.eq(pictures.sweep),
             sweep.initialise.eq(pictures.initialise),
@@ -155,8 +157,9 @@ class MemoryUnit(wiring.Component):
             access.erase.eq(sweep.erase),
             access.sweep_address.eq(sweep.address),
             sweep.busy.eq(access.sweep_busy),
-            sweep.stale.eq(Cat(word.tag.any() & (word.tag != tag) for word, tag in
-                               zip((access.depth, *access.color), current, strict=True))),
+            sweep.stale.eq(Cat(word.tag.any() for word in (access.depth, *access.color))
+                           & ~current),
         ]
-        with m.If(access.write & ~access.write_busy & (access.write_address == sweep.address)):
-            m.d.comb += sweep.overwritten.eq(Cat(1, ~access.back, access.back))
+        # A few bits of the address tell nearly always.
+        near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0
+        m.d.comb += sweep.overwritten.eq(access.write & ~access.write_busy & near)

@@ -1,5 +1,8 @@
 """What a processing element does with each operation it was told."""
 
+from functools import reduce
+from operator import or_
+
 from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -33,9 +36,11 @@ class ProcessingElementControl(wiring.Component):
     first, end: In(id_bits)
         The domain, for the report.
     depths: In(stream of depth words)
+        0 while not valid.
     fragments, busy_cycles: In(32)
         The counts to report.
     responses: Out(stream of response_layout)
+        0 while not valid.
     idle: Out(1)
         No operation here, and the datapath is empty.
 
@@ -102,17 +107,19 @@ class ProcessingElementControl(wiring.Component):
                         m.d.comb += operations.ready.eq(following == "DRAW")
                         m.next = following
 
-        # Whatever the state, it says what it would say: a choice by two bits and no gate more.
-        units = Signal(16)
+        # Whoever has nothing to say says 0, so that an or of all is enough, here and in the link.
+        units = Signal.like(self.first)
         m.d.comb += units.eq(self.end - self.first)
-        chosen = Cat(state.ongoing("READ_BACK") | state.ongoing("REPORT_BUSY"),
-                     state.ongoing("REPORT_FRAGMENTS") | state.ongoing("REPORT_BUSY"))
-        with m.Switch(chosen):
-            for number, (kind, value) in enumerate((
-                    (ResponseKind.DOMAIN, Cat(units, self.first)),
-                    (ResponseKind.DEPTH, self.depths.payload),
-                    (ResponseKind.FRAGMENTS, self.fragments),
-                    (ResponseKind.BUSY, self.busy_cycles))):
-                with m.Case(number):
-                    m.d.comb += [response.kind.eq(kind), response.value.eq(value)]
+        reports = {
+            ResponseKind.DOMAIN: (state.ongoing("REPORT_DOMAIN"), self.first << 16 | units),
+            ResponseKind.DEPTH: (self.depths.valid & state.ongoing("READ_BACK"), C(0)),
+            ResponseKind.FRAGMENTS: (state.ongoing("REPORT_FRAGMENTS"), self.fragments),
+            ResponseKind.BUSY: (state.ongoing("REPORT_BUSY"), self.busy_cycles),
+        }
+        kinds = [Mux(now, kind, 0) for kind, (now, _) in reports.items()]
+        values = [Mux(now, value, 0) for now, value in reports.values()]
+        m.d.comb += [
+            response.kind.eq(reduce(or_, kinds)),
+            response.value.eq(reduce(or_, values) | self.depths.payload),
+        ]
         return m

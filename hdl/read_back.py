@@ -27,6 +27,7 @@ class ReadBack(wiring.Component):
     done: Out(1)
         High for one clock when the last word has been taken.
     depths: Out(stream of depth words)
+        0 while not valid.
     memory: Out(ProcessingElementLines)
 
     Not in the paper; the lines are those of figure 12.
@@ -64,8 +65,8 @@ class ReadBack(wiring.Component):
         m.d.sync += answering.eq(read)
         with m.If(answering):
             m.d.sync += [depths.payload.eq(memory.read_data), depths.valid.eq(1)]
-        with m.Elif(depths.ready):
-            m.d.sync += depths.valid.eq(0)
+        with m.If(depths.valid & depths.ready):  # no answer comes before this
+            m.d.sync += [depths.valid.eq(0), depths.payload.eq(0)]
 
         with m.FSM():
             with m.State("IDLE"):

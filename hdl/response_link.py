@@ -19,7 +19,9 @@ class ResponseLink(wiring.Component):
 
     Members
     -------
-    own, right: In(stream of response_layout)
+    own: In(stream of response_layout)
+        0 while not valid; valid only in its own turn.
+    right: In(stream of response_layout)
     left: Out(stream of response_layout)
     own_turn: In(1)
         This card still has, or may have, something to say.
@@ -42,12 +44,14 @@ class ResponseLink(wiring.Component):
         m = Module()
         free = ~self.left.valid | self.left.ready
         m.d.comb += [
-            self.own.ready.eq(free & self.own_turn),
+            self.own.ready.eq(free),
             self.right.ready.eq(free & ~self.own_turn),
         ]
         with m.If(free):
             m.d.sync += [
-                self.left.valid.eq(Mux(self.own_turn, self.own.valid, self.right.valid)),
-                self.left.payload.eq(Mux(self.own_turn, self.own.payload, self.right.payload)),
+                self.left.valid.eq(self.own.valid | (self.right.valid & ~self.own_turn)),
+                Value.cast(self.left.payload).eq(
+                    Value.cast(self.own.payload)
+                    | Mux(self.own_turn, 0, Value.cast(self.right.payload))),
             ]
         return m

@@ -13,15 +13,15 @@ class TagSweep(wiring.Component):
     """A pass over every word, in clocks in which nobody else asks for the RAM.
 
     A lane is a part of the word with a tag of its own: depth, and colour of either
-    buffer.  A pass reads each word and writes tag 0 to the lanes that are stale.  What the
-    processing element writes there between the two is not stale any more, and is
-    left alone.  So, after a pass: no lane of any word has a tag that was not the
-    lane's current one at any time since the pass began.
+    buffer.  A pass reads each word and writes tag 0 to the lanes that are stale.  Where the
+    processing element may have written the word between the two, it is read again.
+    So, after a pass: no lane of any word has a tag that was not the lane's current
+    one at any time since the pass began.
 
     Proof: take such a tag.  From the beginning of the pass nothing writes it,
-    since only current tags are written.  Each lane of each word is read once; if
-    it has the tag then, it is stale, and is erased unless it is written before:
-    with a current tag.
+    since only current tags are written.  Each lane of each word is read, and if it
+    has the tag then, it is stale and erased, or else the word was written and is
+    read again.
 
     The pass that follows ``initialise`` erases every lane without a look: what is
     there after power-on is not known.  Fuchs & Johnson have the processing
@@ -29,12 +29,13 @@ class TagSweep(wiring.Component):
     background as well, and no element carries the logic for it.
 
     Latency: at most five clocks a word while only the scan asks, which takes every
-    other clock at most: read 2, check 1, erase 2.  ``initialise``: one, and two.
+    other clock at most: read 2, check 1, erase 2.  ``initialise``: one, and two.  While
+    there are writes, as long as it takes to find idle clocks.
 
     Members
     -------
     start, initialise: In(1)
-        Begin a pass of either kind; only while ``idle``.
+        Begin a pass of either kind; only while ``idle``.  Nothing is written in the latter.
     idle: Out(1)
         No pass goes on.
     address: Out(address_bits)
@@ -47,8 +48,8 @@ class TagSweep(wiring.Component):
         What is asked for does not take place in this clock.
     stale: In(3)
         In the clock after a read: lanes of that word whose tag is neither current nor 0.
-    overwritten: In(3)
-        Lanes of the word visited that the processing element writes in this clock.
+    overwritten: In(1)
+        The processing element writes in this clock, and perhaps to the word visited.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -62,21 +63,23 @@ class TagSweep(wiring.Component):
             "erase": Out(3),
             "busy": In(1),
             "stale": In(3),
-            "overwritten": In(3),
+            "overwritten": In(1),
         })
 
     def elaborate(self, platform):
         m = Module()
         words = self.configuration.words
         left = Signal(3)  # lanes to erase
-        taken = Signal(3)  # lanes that were written meanwhile
         everything = Signal()
-        m.d.sync += taken.eq(taken | self.overwritten)
+        following = self.address + 1
+        # Where the address wraps by itself, the carry tells the last word.
+        wraps = words == 1 << len(self.address)
+        last = following[-1] if wraps else self.address == words - 1
 
         def step():
-            m.d.sync += [self.address.eq(self.address + 1), left.eq(0b111), taken.eq(0)]
-            with m.If(self.address == words - 1):
-                if words != 1 << len(self.address):  # it does not wrap by itself
+            m.d.sync += [self.address.eq(following), left.eq(0b111)]
+            with m.If(last):
+                if not wraps:
                     m.d.sync += self.address.eq(0)
                 m.next = "IDLE"
             with m.Elif(everything):
@@ -87,7 +90,7 @@ class TagSweep(wiring.Component):
         with m.FSM():
             with m.State("IDLE"):
                 m.d.comb += self.idle.eq(1)
-                m.d.sync += [everything.eq(self.initialise), left.eq(0b111), taken.eq(0)]
+                m.d.sync += [everything.eq(self.initialise), left.eq(0b111)]
                 with m.If(self.initialise):
                     m.next = "ERASE"
                 with m.Elif(self.start):
@@ -98,10 +101,14 @@ class TagSweep(wiring.Component):
                     m.next = "CHECK"
             with m.State("CHECK"):
                 m.d.sync += left.eq(self.stale)
-                m.next = "ERASE"
+                with m.If(self.overwritten):
+                    m.next = "READ"
+                with m.Else():
+                    m.next = "ERASE"
             with m.State("ERASE"):
-                # What is written in this very clock takes the port.
-                m.d.comb += self.erase.eq(left & ~taken)
-                with m.If(~self.busy | (self.erase == 0)):
+                m.d.comb += self.erase.eq(left)
+                with m.If(~self.busy | (left == 0)):
                     step()
+                with m.Elif(self.overwritten):
+                    m.next = "READ"
         return m

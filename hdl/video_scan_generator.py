@@ -45,7 +45,7 @@ class VideoScanGenerator(wiring.Component):
     clocks of the pixel belong to the processing elements.  Which units read, and
     which of them drives the bus, they know themselves.
 
-    Latency: a pixel is on the pins four clocks after its fetch was announced.
+    Latency: a pixel is on the pins five clocks after its fetch was announced.
     Throughput: a pixel every ``clocks_per_pixel`` clocks.
 
     Members
@@ -59,8 +59,9 @@ class VideoScanGenerator(wiring.Component):
     pins: Out(VideoPins)
     """
 
-    #: Clocks from the announcement to the video bus, and on to the pins.
-    bus_latency = 3
+    #: Clocks from the announcement to when it is shown, on to the video bus, and to the pins.
+    show_latency = 3
+    bus_latency = show_latency + 1
     latency = bus_latency + 1
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -112,7 +113,8 @@ class VideoScanGenerator(wiring.Component):
 
         on_bus = when_on_bus(active, "active")
         color = Mux(scan.drawn, scan.video, self.background)
-        m.d.comb += scan.show.eq(when_on_bus(scan.fetch, "fetch"))
+        m.d.comb += scan.show.eq(
+            delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
         m.d.sync += [
             pins.pixel.eq(when_on_bus(pixel, "pixel")),
             pins.active.eq(on_bus),

@@ -49,6 +49,7 @@ class Card(Agent):
         self.fetches = deque([EMPTY] * 3, maxlen=3)  # of the last three clocks, oldest first
         self.scan_address = None  # whose slot this clock is
         self.captures = deque([None, None], maxlen=2)  # what becomes of the scan reads
+        self.bus = (0, 0)  # in this clock
         self.output = (0, 0)  # whether it has been drawn, and its colour if so
         self.answer = 0  # depth, None where it is unknown
         self.idle = True
@@ -181,17 +182,17 @@ class Card(Agent):
         counts["write_busy"] += write_busy
         counts["read_busy"] += read_busy
 
-        # The bus: what was captured for the fetch of three clocks ago or before.
+        # The bus: what was captured for the fetch of four clocks ago or before.
+        assert (ctx.get(dut.scan.drawn), ctx.get(dut.scan.video)) == self.bus
         captured = self.captures[0]
         if captured is not None:
             self.output = captured
         interlace = self.interlace()
         x, y = self.show["x"] >> interlace.x_shift, self.show["y"] >> interlace.y_shift
         mine = interlace.unit(x, y) == self.id
-        drawn, color = self.output if mine else (0, 0)
-        assert (ctx.get(dut.scan.drawn), ctx.get(dut.scan.video)) == (drawn, color)
-        counts["shown"] += drawn
-        counts["background"] += mine and not drawn
+        self.bus = self.output if mine else (0, 0)
+        counts["shown"] += self.bus[0]
+        counts["background"] += mine and not self.bus[0]
 
         self.idle = not reading
         self.step(scanning, writing and not write_busy, reading and not read_busy)

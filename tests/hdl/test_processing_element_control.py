@@ -65,8 +65,7 @@ class Parts(Agent):
             ctx.set(getattr(self.dut, f"{name}_done"), done)
         sending = self.running == "read_back" and bool(self.unsent) and self.left == 0
         ctx.set(self.dut.depths.valid, sending)
-        if sending:
-            ctx.set(self.dut.depths.payload, self.unsent[0])
+        ctx.set(self.dut.depths.payload, self.unsent[0] if sending else 0)
 
     def sample(self, ctx):
         dut = self.dut
@@ -103,7 +102,7 @@ def run(kinds, *, pause=(no_pause,) * 2, hold=lambda: 0, time=lambda: 2):
     answers = [answer for kind in kinds for answer in RESPONSES.get(kind, ())]
     # As numbers: also one that has no name.
     source = Source(dut.operations, [getattr(kind, "value", kind) for kind in kinds], pause[0])
-    responses = Sink(dut.responses, len(answers), pause[1])
+    responses = Sink(dut.responses, len(answers), pause[1], zero=True)
     datapath, parts = Datapath(dut, source, hold), Parts(dut, time)
     frame_starts = []
 

@@ -23,7 +23,7 @@ def read_back(first, end, words, *, scan=0.0, seed=0, rounds=1, pause=no_pause, 
 
     expected = [memory.depth[unit, address]
                 for unit in range(first, end) for address in range(words)] * rounds
-    sink = Sink(dut.depths, len(expected), pause)
+    sink = Sink(dut.depths, len(expected), pause, zero=True)
     taken = []
     service = Service(dut, rounds, gap, lambda ctx: taken.append(len(sink.items)))
     # The sink looks first: at done the last word has been taken.

@@ -16,14 +16,15 @@ def words(seed, count):
 
 def run(own, right, pause=(no_pause,) * 3, turn=None):
     dut = ResponseLink()
-    own_source = Source(dut.own, own, pause[0])
+    own_source = Source(dut.own, own, pause[0], zero=True)
     right_source = Source(dut.right, right, pause[1])
     sink = Sink(dut.left, len(own) + len(right), pause[2])
 
     def decide(ctx, clock):
-        ctx.set(dut.own_turn, turn(clock) if turn else not own_source.finished)
+        mine = turn(clock) if turn else not own_source.finished
+        ctx.set(dut.own_turn, mine or ctx.get(dut.own.valid))
 
-    simulate(dut, Drive(decide), own_source, right_source, sink, after=3)
+    simulate(dut, own_source, right_source, Drive(decide), sink, after=3)
     return own_source, right_source, sink, [
         {"kind": item.kind, "value": item.value} for item in sink.items]
 
@@ -37,7 +38,7 @@ def test_own_first_then_the_right(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_turns_at_random(seed):
-    """Whoever's turn it is, no word is lost, doubled or out of its own order."""
+    """Whose turn it is while nothing is to say: no word is lost, doubled or out of order."""
     own = [{"kind": 1, "value": number} for number in range(25)]
     right = [{"kind": 2, "value": number} for number in range(25)]
     turns = random.Random(f"turns {seed}")

@@ -59,7 +59,8 @@ class Memory(Agent):
                         if tag not in (0, self.current[lane]))
         ctx.set(dut.stale, stale)
         hit = self.written is not None and self.written[0] == ctx.get(dut.address)
-        ctx.set(dut.overwritten, sum(1 << lane for lane in self.written[1]) if hit else 0)
+        # Other words may be taken for it.
+        ctx.set(dut.overwritten, hit or (self.written is not None and pick.random() < 0.1))
         self.cancelled += hit and self.begin is not None
 
     def sample(self, ctx):

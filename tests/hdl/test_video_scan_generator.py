@@ -24,14 +24,15 @@ class Screen(Agent):
         self.dut = dut
         self.clocks = clocks
         self.start, self.fetch, self.show, self.pins = [], [], [], []
+        self.color = None
 
     def drive(self, ctx):
         scan = self.dut.scan
         show = ctx.get(scan.show)
         # Outside the picture the bus may carry anything: nothing of it may get out.
-        color = color_at(show.x, show.y)
-        ctx.set(scan.drawn, color is not None)
-        ctx.set(scan.video, color or 0)
+        ctx.set(scan.drawn, self.color is not None)
+        ctx.set(scan.video, self.color or 0)
+        self.color = color_at(show.x, show.y)
         ctx.set(self.dut.background, BACKGROUND)
 
     def sample(self, ctx):
@@ -129,10 +130,10 @@ def test_two_scans_pin_by_pin(name):
 
     assert kinds == ({False} if name == "one pixel" else {False, True})
 
-    # The scan lines: one announcement a pixel, three clocks later on the bus, four on the pins.
-    bus = VideoScanGenerator.bus_latency
-    assert (bus, latency) == (3, 4)
-    assert screen.show[bus:] == screen.fetch[:-bus]
+    # The scan lines: one announcement a pixel, shown three clocks later, on the pins five.
+    show = VideoScanGenerator.show_latency
+    assert (show, VideoScanGenerator.bus_latency, latency) == (3, 4, 5)
+    assert screen.show[show:] == screen.fetch[:-show]
     for clock, pin in enumerate(pins):
         assert (screen.fetch[clock] is not None) == bool(pin["active"] and pin["pixel"])
     wanted = [(x, y) for y in range(timing.vertical_active)

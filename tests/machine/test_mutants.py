@@ -75,26 +75,27 @@ MUTANTS = {
         "with m.If(captured):", "with m.If(scan_read):"),
     "front and back colours exchanged": (
         "memory_unit", "MemoryUnit", ["machine"],
-        "Mux(pictures.front, access.color[1], access.color[0])",
-        "Mux(pictures.front, access.color[0], access.color[1])"),
+        "Mux(pictures.front, access.color[1].value, access.color[0].value)",
+        "Mux(pictures.front, access.color[0].value, access.color[1].value)"),
     "survey takes silence for an answer": (
         "survey", "Survey", ["processing_element"],
         "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left & ~taken)", "self.erase.eq(Mux(everything, 0, left & ~taken))"),
+        "self.erase.eq(left)", "self.erase.eq(Mux(everything, 0, left))"),
     "old tags are not swept out": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left & ~taken)", "self.erase.eq(Mux(everything, left & ~taken, 0))"),
+        "self.erase.eq(left)", "self.erase.eq(Mux(everything, left, 0))"),
     "passes stop half way": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.address == words - 1", "self.address[:-1] == words // 2 - 1"),
+        "following[-1] if wraps", "following[-2] if wraps"),
     "depths of all frames are compared": (
         "memory_unit", "MemoryUnit", ["machine"],
-        "access.depth.tag == pictures.depth_tag", "access.depth.tag != 0"),
+        "Mux(current, access.depth.value", "Mux(access.depth.tag.any(), access.depth.value"),
     "colours of all frames are shown": (
         "memory_unit", "MemoryUnit", ["machine"],
-        "color.tag == tag", "color.tag != 0"),
+        "drawn.eq(Mux(pictures.front, current[1], current[0]))",
+        "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
     "a tag is given out before a pass ends": (
         "frame_tags", "FrameTags", ["central_broadcast_controller"],
         "m.If(self.swept)", "m.If(1)"),

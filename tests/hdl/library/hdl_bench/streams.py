@@ -21,10 +21,12 @@ def pauses(seed):
 class Source(Agent):
     """Sends ``items`` on ``stream``: valid and payload hold until taken.
 
-    ``taken`` lists the clock in which each item was taken.
+    ``taken`` lists the clock in which each item was taken.  With ``zero`` the payload
+    is 0 while not valid.
     """
 
-    def __init__(self, stream, items, pause=no_pause):
+    def __init__(self, stream, items, pause=no_pause, *, zero=False):
+        self._zero = zero
         self._stream = stream
         self._items = list(items)
         self._pause = pause
@@ -43,6 +45,8 @@ class Source(Agent):
         if self._wait or self.finished:
             self._wait = max(0, self._wait - 1)
             ctx.set(self._stream.valid, 0)
+            if self._zero:
+                ctx.set(Value.cast(self._stream.payload), 0)
             return
         item = self._items[len(self.taken)]
         payload = self._stream.payload
@@ -63,10 +67,12 @@ class Sink(Agent):
 
     Finished with the ``expected`` number of items; more than that are taken,
     too, so a test sees them.  Checks the protocol in every clock: what is
-    offered is held until taken, and is offered whatever ready is.
+    offered is held until taken, and is offered whatever ready is; with ``zero``,
+    that the payload is 0 while not valid.
     """
 
-    def __init__(self, stream, expected=0, pause=no_pause):
+    def __init__(self, stream, expected=0, pause=no_pause, *, zero=False):
+        self._zero = zero
         self._stream = stream
         self._expected = expected
         self._pause = pause
@@ -85,6 +91,7 @@ class Sink(Agent):
 
     def _offer(self, ctx):
         if not ctx.get(self._stream.valid):
+            assert not self._zero or ctx.get(Value.cast(self._stream.payload)) == 0
             return None
         return ctx.get(Value.cast(self._stream.payload))
 
