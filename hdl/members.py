@@ -84,7 +84,9 @@ def _meaning(component: wiring.Component, path: tuple) -> str:
         if isinstance(signature, stream.Signature):
             texts.append(_STREAM[name])
             break
-        texts.append(_members(described).get(name) or _COMMON.get(name, ""))
+        # A component may have the ports of a signature that has a name.
+        texts.append(_members(described).get(name) or _members(type(signature)).get(name)
+                     or _COMMON.get(name, ""))
         member = signature.members[name]
         if member.is_signature:
             signature = member.signature

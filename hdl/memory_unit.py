@@ -157,6 +157,7 @@ class MemoryUnit(wiring.Component):
             access.erase.eq(sweep.erase),
             access.sweep_address.eq(sweep.address),
             sweep.busy.eq(access.sweep_busy),
+            sweep.scan.eq(access.scan),
             sweep.stale.eq(Cat(word.tag.any() for word in (access.depth, *access.color))
                            & ~current),
         ]

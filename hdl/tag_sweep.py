@@ -28,8 +28,11 @@ class TagSweep(wiring.Component):
     elements do that (step (c) after figure 12); here units that have none are
     background as well, and no element carries the logic for it.
 
-    Latency: at most five clocks a word while only the scan asks, which takes every
-    other clock at most: read 2, check 1, erase 2.  ``initialise``: one, and two.  While
+    Whether somebody else asked is looked at a clock later, to keep the many who may
+    ask out of the way of what comes next.
+
+    Latency: at most six clocks a word while only the scan asks, which takes every
+    other clock at most: read and check 3, erase 3.  ``initialise``: one, and two.  While
     there are writes, as long as it takes to find idle clocks.
 
     Members
@@ -46,6 +49,8 @@ class TagSweep(wiring.Component):
         Asks for tag 0 in these lanes.
     busy: In(1)
         What is asked for does not take place in this clock.
+    scan: In(1)
+        The scan asks in this clock: while initialising, the only one.
     stale: In(3)
         In the clock after a read: lanes of that word whose tag is neither current nor 0.
     overwritten: In(1)
@@ -62,6 +67,7 @@ class TagSweep(wiring.Component):
             "sweep": Out(1),
             "erase": Out(3),
             "busy": In(1),
+            "scan": In(1),
             "stale": In(3),
             "overwritten": In(1),
         })
@@ -71,21 +77,14 @@ class TagSweep(wiring.Component):
         words = self.configuration.words
         left = Signal(3)  # lanes to erase
         everything = Signal()
+        # Of the clock before: whether the RAM was free, was written; and whether in ERASE.
+        served, overwritten, asked = (Signal(name=name)
+                                      for name in ("served", "overwritten", "asked"))
+        m.d.sync += [served.eq(~self.busy), overwritten.eq(self.overwritten)]
         following = self.address + 1
         # Where the address wraps by itself, the carry tells the last word.
         wraps = words == 1 << len(self.address)
         last = following[-1] if wraps else self.address == words - 1
-
-        def step():
-            m.d.sync += [self.address.eq(following), left.eq(0b111)]
-            with m.If(last):
-                if not wraps:
-                    m.d.sync += self.address.eq(0)
-                m.next = "IDLE"
-            with m.Elif(everything):
-                m.next = "ERASE"
-            with m.Else():
-                m.next = "READ"
 
         with m.FSM():
             with m.State("IDLE"):
@@ -97,18 +96,23 @@ class TagSweep(wiring.Component):
                     m.next = "READ"
             with m.State("READ"):
                 m.d.comb += self.sweep.eq(1)
-                with m.If(~self.busy):
-                    m.next = "CHECK"
+                m.next = "CHECK"
             with m.State("CHECK"):
-                m.d.sync += left.eq(self.stale)
-                with m.If(self.overwritten):
-                    m.next = "READ"
-                with m.Else():
+                m.d.comb += self.sweep.eq(~served)
+                m.d.sync += [left.eq(self.stale), asked.eq(0)]
+                with m.If(served):
                     m.next = "ERASE"
             with m.State("ERASE"):
-                m.d.comb += self.erase.eq(left)
-                with m.If(~self.busy | (left == 0)):
-                    step()
-                with m.Elif(self.overwritten):
+                m.d.comb += self.erase.eq(Mux(overwritten, 0, left))
+                m.d.sync += asked.eq(1)
+                with m.If(Mux(everything, ~self.scan, (left == 0) | (asked & served))):
+                    m.d.sync += self.address.eq(following)
+                    with m.If(last):
+                        if not wraps:
+                            m.d.sync += self.address.eq(0)
+                        m.next = "IDLE"
+                    with m.Elif(~everything):
+                        m.next = "READ"
+                with m.Elif(overwritten):
                     m.next = "READ"
         return m

@@ -33,8 +33,11 @@ DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 TARGET_MHZ = 150
 
 #: Without wide multiplexers of LUTs: for them yosys folds whole cones of selection into every
-#: bit, which took a fifth more LUT4s and was no faster.
+#: bit, which took a fifth more LUT4s and was no faster.  With the period that logic has, in ps, and
+#: yosys' script "flow": paths that have the time are mapped for area, some 50 LUT4s of 1000 here.
 _SYNTHESIS = """
+scratchpad -copy abc9.script.flow abc9.script
+scratchpad -set abc9.D {period}
 read_verilog component.v
 read_verilog -lib ram_ports.v
 synth_ecp5 -nowidelut -dff -top {top}
@@ -43,6 +46,7 @@ design -reset
 read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -nowidelut -dff -top {bench} -json netlist.json
 """
+_PERIOD_PS = 8_000
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,8 @@ class Part:
         return {"component.v": component_verilog(component, self.name),
                 "ram_ports.v": RAM_PORTS_VERILOG,
                 "bench.v": bench_verilog(self.name, component_ports(component)),
-                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH)}
+                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH,
+                                                      period=_PERIOD_PS)}
 
 
 def _count(cell: str, doc: str | None = None) -> property:

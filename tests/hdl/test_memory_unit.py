@@ -251,7 +251,7 @@ def test_a_slot_at_random(seed, arguments, ports):
         elif name.endswith("busy") and ports == 2:
             assert count == 0
         elif name == "met":
-            assert count > 1 if ports == 2 else count == 0
+            assert count >= 1 if ports == 2 else count == 0
         elif name in ("passes", "frames"):  # while it is busy all the time, idle clocks are rare
             assert count > 2 or arguments.get("traffic") == 0.9
         else:

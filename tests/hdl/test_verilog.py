@@ -162,7 +162,7 @@ def test_description(texts):
         words, bits = re.match(r"memory_(\d+)x(\d+)", memory["module"]).groups()
         assert (memory["words"], memory["bits"]) == (int(words), int(bits))
         assert memory["contents_at_power_on"] == "unknown"
-    assert facts["timing"]["video_scan_generator"]["latency_clocks"] == 4
+    assert facts["timing"]["video_scan_generator"]["latency_clocks"] == 5
     assert all(timing["stated"] for timing in facts["timing"].values())
     [triangle] = [entry for entry in facts["commands"]["opcodes"]
                   if entry["name"] == "PREPARED_TRIANGLE"]

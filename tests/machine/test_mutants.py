@@ -82,10 +82,10 @@ MUTANTS = {
         "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left)", "self.erase.eq(Mux(everything, 0, left))"),
+        "Mux(overwritten, 0, left)", "Mux(overwritten | everything, 0, left)"),
     "old tags are not swept out": (
         "tag_sweep", "TagSweep", ["memory_unit"],
-        "self.erase.eq(left)", "self.erase.eq(Mux(everything, left, 0))"),
+        "Mux(overwritten, 0, left)", "Mux(everything, left, 0)"),
     "passes stop half way": (
         "tag_sweep", "TagSweep", ["memory_unit"],
         "following[-1] if wraps", "following[-2] if wraps"),
