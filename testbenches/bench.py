@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -25,10 +26,11 @@ _TOGETHER = 4
 class BenchRow:
     """One case on one machine.
 
-    ``measured``    None where only the model was asked
-    ``predicted``   T(2n) - T(n) by the cycle model
-    ``bound``       T(2n) - T(n) at the bounds of both: ``CyclePrediction.bounds``
-    ``binding``     which of those it is, of 2n
+    ``measured``            None where only the model was asked
+    ``predicted``           T(2n) - T(n) by the cycle model
+    ``bound``               T(2n) - T(n) at the bounds of both: ``CyclePrediction.bounds``
+    ``binding``             which of those it is, of 2n
+    ``prediction_seconds``  what the cycle model took
     """
 
     machine: BenchMachine
@@ -39,6 +41,7 @@ class BenchRow:
     predicted: float
     bound: float
     binding: str
+    prediction_seconds: float
 
     @property
     def cycles(self) -> float:
@@ -97,8 +100,10 @@ def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
 def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
     configuration = machine.configuration
     setup = _setup_timing(configuration)
+    began = time.perf_counter()
     once = predict_cycles(configuration, case.once, setup=setup)
     twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
+    seconds = time.perf_counter() - began
     return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
                     predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
-                    binding=twice.binding)
+                    binding=twice.binding, prediction_seconds=seconds)

@@ -44,6 +44,7 @@ class Measurement:
     ``cycles_once``        T(n): first of n triangles taken … all elements finished
     ``cycles_twice``       T(2n)
     ``element_fragments``  of 2n triangles, per processing element
+    ``seconds``            its share of the simulation, compiling not counted
     ``activity``           what the processing elements did in T(2n); None where nothing tells
     """
 
@@ -54,6 +55,7 @@ class Measurement:
     cycles_once: int
     cycles_twice: int
     element_fragments: tuple[int, ...]
+    seconds: float
     activity: ActivityRecord | None = None
 
     @property
@@ -204,7 +206,8 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
     assert run.accepted is not None
     once, twice = (int(run.accepted[barrier] - run.accepted[first])
                    for first, barrier in zip(frame.first, frame.barriers, strict=True))
+    seconds = run.seconds / len(responses[ResponseKind.FRAME_DRAWN][0])
     # One record until the first counters, the clear; then one for each of the two.
     activity = run.activity[3 * number + 2] if run.activity else None
     return Measurement(case.name, case.order, case.once.triangles, fragments[0], once, twice,
-                       tuple((counts[2] - counts[1]).tolist()), activity)
+                       tuple((counts[2] - counts[1]).tolist()), seconds, activity)

@@ -100,6 +100,11 @@ def _notes(rows: Sequence[BenchRow]) -> list[str]:
         f"{of_bound}  Model: how far the cycle model is off.  Busy: fragments per clock and "
         "processing element.",
     ]
+    predicted = sum(row.prediction_seconds for row in rows)
+    simulated = sum(row.measured.seconds for row in rows if row.measured is not None)
+    said.append(f"The cycle model took {predicted:.2f} s" + (
+        f", the simulations {simulated:,.1f} s without compiling: {simulated / predicted:,.0f} "
+        "times as long." if simulated else "."))
     return [*said, "Peers on the right, in clocks a triangle: without set-up "
             f"{' and '.join(without_setup)}, without a depth test {' and '.join(without_depth)}."]
 
@@ -123,6 +128,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
         "order": row.order,
         "triangles": row.triangles,
         "predicted_cycles": row.predicted,
+        "prediction_seconds": row.prediction_seconds,
         "bound": {"cycles": row.bound, "binding": row.binding,
                   "share": row.bound / row.cycles},
         "peers": {peer.name: peer.cycles_per_triangle[row.case] for peer in peers()
@@ -138,6 +144,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
             "fragments_per_clock": measured.fragments_per_clock,
             "utilisation": measured.utilisation,
             "latency": measured.latency,
+            "simulation_seconds": measured.seconds,
             "element_fragments": list(measured.element_fragments),
             "prediction_error": row.prediction_error,
         }
