@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import PIPELINE, walks
+from .element_clocks import Pipeline, pipeline_of, walks
 from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
@@ -38,7 +38,7 @@ Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
 #: From the frame's start to the first fragment's read, from the last one to done.
-LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
+LATENCY_CLOCKS = Pipeline.queue + Pipeline.latency + Pipeline.finish
 
 #: How many triangles the rows that are found ahead belong to, about.
 TRIANGLES_AHEAD = 4
@@ -89,7 +89,7 @@ def estimate_cycles(configuration: MachineConfiguration,
         waits[(interlace.x_unit_bits > spans.x_bits) | (~alone & configuration.skew)] = 0
         clocks = (spans.length + written * waits) / (1 - slots)
         drawn = np.bincount(places, clocks, count * elements)
-        _, walked, _ = walks(blocks, elements, spans, PIPELINE)
+        _, walked, _ = walks(blocks, elements, spans, pipeline_of(configuration))
         draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
         fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
     return CycleEstimate(draw, len(triangles), fragments)

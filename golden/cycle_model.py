@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import PIPELINE, Pipeline, element_clocks, walks
+from .element_clocks import Pipeline, element_clocks, pipeline_of, walks
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
 from .port_clocks import PortClocks
@@ -101,14 +101,15 @@ class CyclePrediction:
 
 
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
-                   pipeline: Pipeline = PIPELINE, after: DisplayList | None = None,
+                   pipeline: Pipeline | None = None, after: DisplayList | None = None,
                    setup: SetupTiming | None = None) -> CyclePrediction:
     """The clocks for ``display_list``.
 
     ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
-    machine's own set-up, or None where the triangles come prepared.  Precision does not matter to
-    the clocks.
+    machine's own set-up, or None where the triangles come prepared; ``pipeline`` None is that of
+    the machine.  Precision does not matter to the clocks.
     """
+    pipeline = pipeline or pipeline_of(configuration)
     interlace = configuration.interlace
     triangles = Triangles.of(display_list,
                              Grid.of(display_list, interlace.x_shift, interlace.y_shift))

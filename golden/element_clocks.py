@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .configuration import MachineConfiguration
 from .lattice_spans import LatticeBlock, LatticeSpans
 
 Bool = NDArray[np.bool_]
@@ -32,6 +33,8 @@ class Pipeline:
     ``first_row``    to find a triangle's first row, in a domain of several blocks of units
     ``block``        from the last row of a block to the first one of the next
     ``again``        from such a domain's last row to the next load
+    ``end``          what a triangle's end without a span takes; 0 where it passes while the span
+                     before it is drawn
     ``finish``       from the read of the last fragment until the machine is seen to be done
     """
 
@@ -44,10 +47,13 @@ class Pipeline:
     first_row: int = 2
     block: int = 3
     again: int = 2
+    end: int = 1
     finish: int = 4
 
 
-PIPELINE = Pipeline()
+def pipeline_of(configuration: MachineConfiguration) -> Pipeline:
+    """Where a fragment waits for its port an end has passed meanwhile."""
+    return Pipeline(end=1 if configuration.memory_ports == 2 else 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +132,8 @@ def element_clocks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpan
 
     pair, offset, clocks, none = _entries(spans, pairs, clocks, walk, again, first_row,
                                           blocks)
-    clocks = _with_gaps(element[pair], clocks, none)
+    clocks = (np.where(none, pipeline.end, clocks) if pipeline.end
+              else _with_gaps(element[pair], clocks, none))
     begins = np.concatenate([[0.0], np.cumsum(clocks)])
     first = np.searchsorted(pair, np.arange(len(triangle)))
     last = np.searchsorted(pair, np.arange(len(triangle)), "right") - 1

@@ -257,7 +257,9 @@ def written_out(configuration, listed, pipeline, depth, setup):
             ends = 0
             while place + ends + 1 < len(pixels) and pixels[place + ends + 1] is None:
                 ends += 1
-            clocks[-1].append(0 if count is None else max(count, 1 + ends))
+            if pipeline.end:
+                ends = 0
+            clocks[-1].append(pipeline.end if count is None else max(count, 1 + ends))
     never = -10**9
     load, free, number = ([never for _ in elements], [never for _ in elements],
                           [0 for _ in elements])
@@ -309,7 +311,8 @@ def test_the_arrays_say_what_the_recurrence_says(cards, skew, seed):
     listed = scene(10 + seed, n=60, size=pick.choice((4, 12, 25)))
     # The last triangle has a span in every element, which keeps the list in one part.
     listed.position[-1] = 256 * np.array([[0, 0], [39, 0], [0, 27]])
-    pipeline = Pipeline(**{field.name: pick.randrange(1, 9) for field in fields(Pipeline)})
+    pipeline = Pipeline(**{field.name: pick.randrange(1, 9) for field in fields(Pipeline)}
+                        | {"end": seed % 2})
     configuration = configure(listed, cards=cards, memory_ports=2, skew=skew)
     setup = pick.choice((None, SetupTiming(interval=20, latency=30, inside=3),
                          SetupTiming(interval=2, latency=11, waiting=4, inside=7)))
