@@ -123,6 +123,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
                     "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
                     "skew": machine.skew,
                     "fifo_depth": machine.fifo,
+                    "scan_reads_per_line": machine.configuration.interlace.scan_reads,
                     "fraction_bits": machine.configuration.fraction_bits},
         "case": row.case,
         "order": row.order,
