@@ -45,8 +45,8 @@ read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -nowidelut {options} -top {bench} -json netlist.json
 """
 
-#: With the period that logic has, in ps, paths that have the time are mapped for area, and registers
-#: that are the same are found: a tenth less.  Both take more stack than large parts leave.
+#: With the period that logic has, in ps, paths that have the time are mapped for area, and equal
+#: registers are found: a tenth less.  Both take more stack than large parts leave.
 _MAPPINGS = {
     "area": {"first": "scratchpad -copy abc9.script.flow abc9.script\n"
                       "scratchpad -set abc9.D 8000", "options": "-dff"},
