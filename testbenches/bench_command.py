@@ -46,8 +46,8 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--fifo", "fifos", type=_numbers(2, 4096),
               help="Triangles a processing element holds in waiting.  [default: 16]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
-              default="visible", help="Of depths: visible draws each triangle before those drawn "
-              "earlier, random shuffles them.  [default: visible]")
+              help="Of depths: visible draws each triangle before those drawn earlier, random "
+              "shuffles them.  [default: visible]")
 @click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
               "option restricts: hours.")
 @click.option("--engine", type=click.Choice([*ENGINES, MODEL]), default="verilator",
@@ -60,7 +60,7 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png",
               help="Also draw the speed along --fifo, --block or --elements.")
 @click.pass_obj
-def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, ...],
+def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, ...] | None,
                   everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
                   plot: Path | None, **axes: Any) -> None:
     """Measure clocks per triangle and fragment on chosen machines, beside the peers' figures.
@@ -91,8 +91,7 @@ def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, 
                          "several numbers")
     names = [check_case(case) for case in cases] or list(
         case_names() if everything else DEFAULT_CASES)
-    if everything:
-        orders = ORDERS
+    orders = orders or (ORDERS if everything else ORDERS[:1])
     before = None if baseline is None else load_baseline(baseline)
     with ExitStack() as outputs:
         files = {path: outputs.enter_context(atomic_file(path, option))

@@ -170,6 +170,15 @@ def test_the_model_alone(tmp_path):
         assert picture.size[0] > 500
 
 
+def test_all_is_what_no_option_restricts(tmp_path):
+    machine = ["--all", "--elements", "1", "--units", "2", "--ports", "2", "--setup", "host",
+               "--block", "1", "--engine", "model", "--json", tmp_path / "b.json"]
+    for options, orders in ([], ORDERS), (["--order", "visible"], ["visible"]):
+        bench("one_pixel", *machine, *options)
+        rows = json.loads((tmp_path / "b.json").read_text())["rows"]
+        assert [row["order"] for row in rows] == list(orders)
+
+
 def test_set_up_in_hardware_has_its_own_bound(tmp_path):
     """Three clocks a triangle where that is what the fast one takes."""
     bench("one_pixel", "--engine", "model", "--elements", "16", "--setup", "host,fast", "--json",
