@@ -5,7 +5,8 @@ start and two increments, rounded half up at ``2**-fraction_bits`` and kept modu
 power of two.  An edge is known as a quotient and a remainder; a machine carries it in
 fixed point, with as many fraction bits as make every column exact (``carry_edges``).
 
-Widths at which every triangle fits, b the display list's coordinate bits, s its sub-pixel bits:
+Widths at which every triangle fits (``edge_widths``, and below), b the display list's coordinate
+bits, s its sub-pixel bits:
 
     edge column      ``edge_column_bits``      b - s + 1, signed
     edge remainder   ``edge_remainder_bits``   b, unsigned; the height of an edge as well

@@ -15,6 +15,7 @@ from .wires import wires
 
 __all__ = ["MemoryUnit"]
 
+#: Of an address, to tell whether a write may go to the word that is swept: a false alarm in 16.
 COMPARED_BITS = 4
 
 
@@ -24,9 +25,9 @@ class MemoryUnit(wiring.Component):
     Its number and the total come from the lines alone.  With one port
     (``memory_ports``) each clock serves the scan generator, else a write of its
     processing element, else a read; whoever waits sees ``busy``.  With two nobody
-    ever waits.  The scan's colour goes into an output register, which drives the
-    video bus while the scan shows a pixel of this unit, so the processing element
-    has the port in the meantime.  The bus is driven from registers.
+    ever waits.  The scan's colour goes into an output register, so the processing
+    element has the port in the meantime; while the scan shows a pixel of this unit it
+    goes on to the registers that drive the video bus.
 
     Each lane of a word has a tag beside it.  One that is not the lane's current
     tag reads as background: depth 2^d - 1, and the video bus is told that nothing has
@@ -161,6 +162,5 @@ class MemoryUnit(wiring.Component):
             sweep.stale.eq(Cat(word.tag.any() for word in (access.depth, *access.color))
                            & ~current),
         ]
-        # A few bits of the address tell nearly always.
         near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0
         m.d.comb += sweep.overwritten.eq(access.write & ~access.write_busy & near)

@@ -28,8 +28,8 @@ class TagSweep(wiring.Component):
     elements do that (step (c) after figure 12); here units that have none are
     background as well, and no element carries the logic for it.
 
-    Whether somebody else asked is looked at a clock later, to keep the many who may
-    ask out of the way of what comes next.
+    Whether somebody else asked is looked at a clock later: the lines of all who may
+    ask are long, and nothing waits for the answer.
 
     Latency: at most six clocks a word while only the scan asks, which takes every
     other clock at most: read and check 3, erase 3.  ``initialise``: one, and two.  While

@@ -15,7 +15,7 @@ from .bench_cases import DEPTH_BITS, SUB_BITS
 from .domain import Domain
 from .machine_options import SETUPS
 from .outside_ram import OutsideRam
-from .place_and_route import Part
+from .place_and_route import LogicMapping, Part
 
 
 def domain(configuration: MachineConfiguration) -> wiring.Component:
@@ -46,7 +46,7 @@ class Board:
     name: str
     build: Callable[[MachineConfiguration], wiring.Component] | None = None
     changes: Mapping[str, Any] = field(default_factory=dict)
-    mapping: str = "area"
+    mapping: LogicMapping = "area"
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""

@@ -16,11 +16,13 @@ _AGAIN_SECONDS = 0.01
 class Interrupted(BaseException):
     """The user or the system wants the program to end.
 
-    ``status`` is the exit status by the shell's custom: 130 for Ctrl-C, 143 for SIGTERM.
+    ``number`` is the signal's, ``status`` the exit status by the shell's custom: 130 for Ctrl-C,
+    143 for SIGTERM.
     """
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
+        self.number = number
         self.status = 128 + number
 
 
@@ -54,8 +56,8 @@ def _again_if_swallowed() -> Iterator[None]:
         if not isinstance(swallowed.exc_value, Interrupted):
             before(swallowed)
             return
-        number = swallowed.exc_value.status - 128
-        timers.append(threading.Timer(_AGAIN_SECONDS, os.kill, (os.getpid(), number)))
+        again = os.getpid(), swallowed.exc_value.number
+        timers.append(threading.Timer(_AGAIN_SECONDS, os.kill, again))
         timers[-1].start()
 
     sys.unraisablehook = hook

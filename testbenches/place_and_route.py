@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, Literal
 
 from ..golden.configuration import MachineConfiguration
 from ..golden.errors import InputError
@@ -45,9 +45,11 @@ read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -nowidelut {options} -top {bench} -json netlist.json
 """
 
+LogicMapping = Literal["area", "plain"]
+
 #: With the period that logic has, in ps, paths that have the time are mapped for area, and equal
 #: registers are found: a tenth less.  Both take more stack than large parts leave.
-_MAPPINGS = {
+_MAPPINGS: dict[LogicMapping, dict[str, str]] = {
     "area": {"first": "scratchpad -copy abc9.script.flow abc9.script\n"
                       "scratchpad -set abc9.D 8000", "options": "-dff"},
     "plain": {"first": "", "options": ""},
@@ -70,7 +72,7 @@ class Part:
     configuration: MachineConfiguration
     name: str = "processing_element"
     build: Callable[[MachineConfiguration], Any] | None = None
-    mapping: str = "area"
+    mapping: LogicMapping = "area"
 
     def __post_init__(self) -> None:
         if self.build and "<" in getattr(self.build, "__qualname__", "<"):

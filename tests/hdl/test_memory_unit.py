@@ -240,7 +240,7 @@ class Card(Agent):
     (5, {"period": 1, "renumber": 0.02})], ids=str)
 def test_a_slot_at_random(seed, arguments, ports):
     dut = MemoryUnit(configuration=CONFIGURATIONS[ports])
-    card = Card(dut, seed, 1000, **arguments)
+    card = Card(dut, seed, 1500, **arguments)
     simulate(dut, card)
     print(card.counts)
     for name, count in card.counts.items():
@@ -251,7 +251,7 @@ def test_a_slot_at_random(seed, arguments, ports):
         elif name.endswith("busy") and ports == 2:
             assert count == 0
         elif name == "met":
-            assert count >= 1 if ports == 2 else count == 0
+            assert count > 1 if ports == 2 else count == 0
         elif name in ("passes", "frames"):  # while it is busy all the time, idle clocks are rare
             assert count > 2 or arguments.get("traffic") == 0.9
         else:

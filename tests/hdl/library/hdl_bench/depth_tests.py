@@ -54,17 +54,17 @@ def on_one_pixel_after(gap, between):
 class DepthTestRun:
     """Draws ``fragments`` into the first ``units`` units, and compares all memory afterwards.
 
-    ``background`` is in memory before, or random depths; ``memory`` are settings of
+    ``background`` is in memory before, or random depths; ``settings`` are those of
     ``MemoryLines``.  Attributes: ``source``, ``memory``, the numbers of the ``winners``, ``busy``
     by clock, how often a depth was ``forwarded``.
     """
 
     def __init__(self, dut, fragments, *, units, pause=no_pause, background=None, after=40,
-                 **memory):
+                 **settings):
         configuration = dut.configuration
         self.memory = memory = MemoryLines(
             dut.memory, first=0, end=units, words=configuration.words,
-            depth_bits=configuration.depth_bits, **memory)
+            depth_bits=configuration.depth_bits, **settings)
         if background is not None:
             memory.depth = dict.fromkeys(memory.depth, background)
         depth, color, self.winners = dict(memory.depth), dict(memory.back), []
