@@ -26,19 +26,19 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import Pipeline, pipeline_of, walks
+from .element_walks import walks
 from .errors import InputError
 from .exact import depth_complexity
 from .grid import Grid
-from .lanes import FRAGMENTS_WAITING
+from .lanes import FRAGMENTS_WAITING, scan_share
 from .lattice_spans import lattice_blocks, lattice_spans
-from .port_clocks import scan_share
+from .pipeline import PIPELINE
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
 #: From the frame's start to the first fragment's read, from the last one to done.
-LATENCY_CLOCKS = Pipeline.queue + Pipeline.latency + Pipeline.finish
+LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
 
 #: How many triangles the rows that are found ahead belong to, about.
 TRIANGLES_AHEAD = 4
@@ -89,7 +89,7 @@ def estimate_cycles(configuration: MachineConfiguration,
         waits[(interlace.x_unit_bits > spans.x_bits) | (~alone & configuration.skew)] = 0
         clocks = (spans.length + written * waits) / (1 - slots)
         drawn = np.bincount(places, clocks, count * elements)
-        _, walked, _ = walks(blocks, elements, spans, pipeline_of(configuration))
+        _, walked, _ = walks(blocks, elements, spans, PIPELINE)
         draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
         fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
     return CycleEstimate(draw, len(triangles), fragments)

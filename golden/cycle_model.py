@@ -1,8 +1,8 @@
 """Clocks that a machine takes for a list of triangles, by model instead of simulation.
 
-A triangle costs a processing element clocks of its walker and clocks of its memory
-ports (``element_clocks``), made by whole arrays; then the list is followed triangle by
-triangle, through those elements that keep it::
+A triangle costs a processing element clocks of its walker (``element_walks``) and
+clocks of its memory ports (``two_port_element``, ``one_port_element``).  The list is
+followed triangle by triangle, through those elements that keep it::
 
     load   = max(broadcast + queue, the load before + its walk)
     drawn  = max(drawn before + draw, load + latency + alone)
@@ -12,15 +12,18 @@ where the queue of any element is full.  All rows of a triangle are thought to r
 ahead together; only of its last one is it asked whether there was a place.
 ``cycle_estimate`` is the rough and quick sum of the same parts.
 
-Where a unit has one port, the clocks of a span are a model too: what reads, writes
-and the scan's slots come to on average.
+Where a unit has one port each span is followed, and its clocks are a model too: what
+reads, writes and the scan's slots come to on average.  Where the scan is as a list
+begins is not known, so one that takes less than a few of its lines may be five percent off.
 """
 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,16 +31,16 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_clocks import Pipeline, element_clocks, pipeline_of, walks
+from .element_walks import entries_of
 from .grid import Grid
 from .lattice_spans import lattice_blocks, lattice_spans
-from .port_clocks import PortClocks
+from .one_port_element import OnePortElement, one_port_costs
+from .pipeline import NEVER, PIPELINE, Drawn, Pipeline
+from .port_accesses import PortAccesses
+from .two_port_element import TwoPortElement, two_port_costs
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
-
-#: Long before all that counts.
-_NEVER = -1e15
 
 
 @dataclass(frozen=True)
@@ -101,49 +104,51 @@ class CyclePrediction:
 
 
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
-                   pipeline: Pipeline | None = None, after: DisplayList | None = None,
+                   pipeline: Pipeline = PIPELINE, after: DisplayList | None = None,
                    setup: SetupTiming | None = None) -> CyclePrediction:
     """The clocks for ``display_list``.
 
     ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
-    machine's own set-up, or None where the triangles come prepared; ``pipeline`` None is that of
-    the machine.  Precision does not matter to the clocks.
+    machine's own set-up, or None where the triangles come prepared; ``pipeline`` is that of the
+    machine.  Precision does not matter to the clocks.
     """
-    pipeline = pipeline or pipeline_of(configuration)
     interlace = configuration.interlace
     triangles = Triangles.of(display_list,
                              Grid.of(display_list, interlace.x_shift, interlace.y_shift))
     blocks = lattice_blocks(configuration)
-    elements = configuration.processing_elements
-    ports = PortClocks(configuration, display_list, triangles, after)
-    cage = _Cage(elements, configuration.fifo_depth, pipeline)
+    elements = range(configuration.processing_elements)
+    ports = None
+    cage: _Cage
+    if configuration.memory_ports == 1:
+        ports = PortAccesses(configuration, display_list, triangles, after)
+        cage = _Cage([OnePortElement(configuration, element, pipeline) for element in elements],
+                     configuration.fifo_depth, pipeline)
+    else:
+        cage = _Cage([TwoPortElement(pipeline) for _ in elements], configuration.fifo_depth,
+                     pipeline)
     arrivals = None if setup is None else _SetUp(setup, triangles.primitive)
     finished: list[float] = []
-    bound = np.zeros((2, elements))
-    begun = np.zeros(elements)
+    bound = np.zeros((2, len(elements)))
     for spans in lattice_spans(triangles, blocks):
-        walked = _, walk, first_row = walks(blocks, elements, spans, pipeline)
-        load = begun + np.cumsum(walk, axis=0) - walk
-        begun = begun + walk.sum(axis=0)
-        found = (load[spans.triangle, spans.element] + first_row[spans.triangle, spans.block]
-                 + spans.step)
-        clocks = element_clocks(blocks, elements, spans, walked, *ports.of(spans, found), pipeline)
-        bound += [np.bincount(clocks.element, clocks.walk, elements),
-                  np.bincount(spans.element, spans.length, elements)]
-        costs = list(zip(*(getattr(clocks, name).tolist() for name in (
-            "element", "walk", "draw", "alone", "held", "left")), strict=True))
-        places = np.searchsorted(clocks.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
+        entries = entries_of(blocks, len(elements), spans, pipeline)
+        bound += [np.bincount(entries.element, entries.walk, len(elements)),
+                  np.bincount(spans.element, spans.length, len(elements))]
+        costs = (two_port_costs(entries, spans, pipeline) if ports is None
+                 else one_port_costs(entries, spans, ports.of(spans)))
+        kept = list(zip(entries.element.tolist(), entries.walk.tolist(), costs, strict=True))
+        places = np.searchsorted(entries.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
         for first, end in pairwise(places):
             sent = cage.broadcast(0.0 if arrivals is None else arrivals.arrival())
             if arrivals is not None:
                 arrivals.leaves(sent)
-            for cost in costs[first:end]:
-                cage.take(*cost)
+            for element, walk, cost in kept[first:end]:
+                cage.take(element, walk, cost)
             finished.append(cage.finished)
-    kept = len(triangles)
-    setup_bound = 0 if setup is None else max(setup.interval * kept, display_list.triangles)
-    return CyclePrediction(np.array(finished), float(setup_bound), float(kept), bound.max(axis=0),
-                           ports.bound)
+    kept_triangles = len(triangles)
+    setup_bound = 0 if setup is None else max(setup.interval * kept_triangles,
+                                              display_list.triangles)
+    return CyclePrediction(np.array(finished), float(setup_bound), float(kept_triangles),
+                           bound.max(axis=0), 0.0 if ports is None else ports.bound)
 
 
 class _SetUp:
@@ -155,8 +160,8 @@ class _SetUp:
         self._offers = iter(np.diff(primitive, prepend=-1).tolist())
         self._offered = -1.0
         # The triangles whose places are taken, the latest last.
-        self._entered = deque([_NEVER] * timing.waiting, timing.waiting)
-        self._sent = deque([_NEVER] * timing.inside, timing.inside)
+        self._entered = deque([NEVER] * timing.waiting, timing.waiting)
+        self._sent = deque([NEVER] * timing.inside, timing.inside)
 
     def arrival(self) -> float:
         """Of the next triangle."""
@@ -169,22 +174,30 @@ class _SetUp:
         self._sent.append(sent)
 
 
+class _Element(Protocol):
+    """A processing element, told its triangles in drawing order."""
+
+    def take(self, load: float, cost: Any) -> Drawn:
+        """A triangle that its walker loads then, and what it must know of it."""
+
+
 class _Cage:
     """The broadcast and all processing elements.
 
     ``finished``  when all would be done, were there no more triangles
     """
 
-    def __init__(self, elements: int, fifo_depth: int, pipeline: Pipeline) -> None:
+    def __init__(self, elements: Sequence[_Element], fifo_depth: int,
+                 pipeline: Pipeline) -> None:
         self._pipeline = pipeline
-        self._load = [_NEVER] * elements
-        self._drawn = [_NEVER] * elements
+        self._elements = elements
+        self._load = [NEVER] * len(elements)
         # When the places of each element's triangles became free, the next one to be taken first.
-        self._free = [deque([_NEVER] * (fifo_depth - 1)) for _ in range(elements)]
+        self._free = [deque([NEVER] * (fifo_depth - 1)) for _ in elements]
         self._sent = -1.0
         # From when on all have a place: with, and without the last triangle that was sent.
-        self._room = self._earlier_room = _NEVER
-        self.finished = _NEVER
+        self._room = self._earlier_room = NEVER
+        self.finished = NEVER
 
     def broadcast(self, arrival: float) -> float:
         """When a triangle that is ready at ``arrival`` is sent.
@@ -200,17 +213,15 @@ class _Cage:
         self._earlier_room = self._room
         return self._sent
 
-    def take(self, element: int, walk: float, draw: float, alone: float, held: float,
-             left: float) -> None:
-        """The triangle that was sent; see ``ElementClocks``."""
+    def take(self, element: int, walk: int, cost: Any) -> None:
+        """The triangle that was sent; ``walk``: clocks from its load to the next."""
         pipeline = self._pipeline
         load = max(self._load[element], self._sent + pipeline.queue)
         walked = load + walk
-        drawn = max(self._drawn[element] + draw, load + pipeline.latency + alone)
-        self._load[element] = max(walked, drawn - held)
-        self._drawn[element] = drawn
+        drawn, walker, done = self._elements[element].take(load, cost)
+        self._load[element] = max(walked, walker)
         places = self._free[element]
         places.popleft()
         places.append(1 + max(walked + pipeline.found, drawn - pipeline.valued))
         self._room = max(self._room, places[0])
-        self.finished = max(self.finished, drawn + left + pipeline.finish)
+        self.finished = max(self.finished, done + pipeline.finish)

@@ -2,9 +2,10 @@
 
 A fragment reads, and where it is visible writes, at the one port of its unit, which the
 scan has now and then.  Units with even and with odd numbers are served side by side,
-in two *lanes*: in a clock one lane reads while the other writes, and a few fragments
-wait before each.  So a span goes on while a lane is still at work for the one before,
-and is held up only where more would wait than there is room for.
+in two *lanes*: in a clock one lane reads while the other writes.  Where no processing
+element has more than one unit there is one lane.  A few fragments wait before each, so
+a span goes on while a lane is still at work for the one before, and is held up only
+where more would wait than there is room for.
 
 Each lane is followed as one server with so much work, span by span; which line the
 scan is at decides how much of its time it has.
@@ -19,15 +20,26 @@ from .cards import domains
 from .configuration import MachineConfiguration
 
 Float64 = NDArray[np.float64]
-Int64 = NDArray[np.int64]
 
-#: Fragments that can wait before each of two lanes, so that short runs in one unit even out.
+#: Of a span, by lane: its fragments, the visible ones, and the clocks that its units need for both.
+SpanAccesses = tuple[list[float], list[float], list[float]]
+
+#: Fragments that can wait before each lane, so that short runs in one unit even out, and rows
+#: without fragments.
 FRAGMENTS_WAITING = 16
 
 
 def depth_lanes(configuration: MachineConfiguration) -> int:
     """1 where no processing element has more than one memory unit, or 2."""
     return 1 + any(units > 1 for _, units in domains(configuration.cards))
+
+
+def scan_share(configuration: MachineConfiguration) -> float:
+    """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
+    interlace, timing = configuration.interlace, configuration.timing
+    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
+    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
+    return shown / (groups << interlace.y_unit_bits)
 
 
 def scan_shares(configuration: MachineConfiguration) -> Float64:
@@ -51,46 +63,33 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     return np.asarray(read[:, :, :-1].mean(axis=1) * (shown / clocks))
 
 
-class LaneClocks:
-    """The lanes of every processing element, asked span by span in drawing order.
+class ElementLanes:
+    """The lanes of one processing element, which are told its spans in drawing order.
 
-    The scan begins with the first span.
+    The scan begins at clock 0.  ``done`` is when the lanes have done all that they were told.
     """
 
-    def __init__(self, configuration: MachineConfiguration) -> None:
-        timing, elements = configuration.timing, configuration.processing_elements
-        self._waiting = FRAGMENTS_WAITING if depth_lanes(configuration) == 2 else 0
+    def __init__(self, configuration: MachineConfiguration, element: int) -> None:
+        timing = configuration.timing
         clocks_per_line = timing.horizontal_total * configuration.clocks_per_pixel
         self._clocks_per_row = clocks_per_line << configuration.interlace.y_shift
-        self._shares: list[list[list[float]]] = scan_shares(configuration).tolist()
-        self._now = [0.0] * elements
-        #: When each lane has done all it has.
-        self._done = [[0.0, 0.0] for _ in range(elements)]
+        self._shares: list[list[float]] = scan_shares(configuration)[:, element].tolist()
+        self._done = [0.0, 0.0]
 
-    def of(self, element: Int64, begin: Float64, reads: Int64, writes: Int64,
-           ways: Int64) -> tuple[Float64, Float64]:
-        """float64 (n,) each: clocks from a span's first fragment until the next one's may come, and
-        from then on until the lanes have done all.
+    @property
+    def done(self) -> float:
+        return max(self._done)
 
-        ``begin``: no sooner does it begin; ``reads``, ``writes``: int64 (n, 2), by lane; ``ways``:
-        units of a lane that they are spread over.  The next call goes on where this one ends.
-        """
-        work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
-        clocks, left = np.empty(len(element)), np.empty(len(element))
-        rows, waiting = len(self._shares), self._waiting
-        for place, (which, earliest, (even, odd), written, worked) in enumerate(zip(
-                element.tolist(), begin.tolist(), reads.tolist(), writes.tolist(), work.tolist(),
-                strict=True)):
-            now, done = max(self._now[which], earliest), self._done[which]
-            share = self._shares[int(now / self._clocks_per_row) % rows][which]
-            # A read is lost where one lane writes while the scan has the other.
-            end = now + even + odd + written[0] * share[1] + written[1] * share[0]
-            for lane, count in enumerate((even, odd)):
-                if count:
-                    pace = 1 - share[lane]
-                    done[lane] = max(done[lane], now) + worked[lane] / pace
-                    end = max(end, done[lane] - waiting * worked[lane] / (count * pace))
-            clocks[place] = end - now
-            left[place] = max(*done, end) - end
-            self._now[which] = end
-        return clocks, left
+    def take(self, begin: float, accesses: SpanAccesses) -> float:
+        """When the next span's first fragment may come, of a span that begins at ``begin``."""
+        (reads, written, worked), done = accesses, self._done
+        share = self._shares[int(begin / self._clocks_per_row) % len(self._shares)]
+        # A read is lost where one lane writes while the scan has the other.
+        end = begin + reads[0] + reads[1] + written[0] * share[1] + written[1] * share[0]
+        for lane in range(2):
+            count = reads[lane]
+            if count:
+                pace = 1 - share[lane]
+                done[lane] = max(done[lane], begin) + worked[lane] / pace
+                end = max(end, done[lane] - FRAGMENTS_WAITING * worked[lane] / (count * pace))
+        return end

@@ -1,4 +1,4 @@
-"""The Z-buffer comparison of one-port memories: two lanes share the lines (figure 3)."""
+"""The Z-buffer comparison of one-port memories: a lane, or two that share the lines (figure 3)."""
 
 from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
@@ -21,17 +21,19 @@ class DepthTest(wiring.Component):
     a read of the other lane; where nothing is written, of that with more waiting.  A
     lane keeps still while the scan has the port of one of its units.
 
-    Where no processing element has more than one unit there is one lane, and nothing
-    waits outside it.
+    Where no processing element has more than one unit there is one lane, whose fragments
+    wait, too: so its port has work while rows without fragments go by.
 
     Latency: ``latency`` clocks from a fragment's read to its write; ``waiting`` from a
-    fragment to its read.  Throughput: a fragment a clock while the ports of even and
-    odd units have as many accesses; on one unit two clocks for a visible one.
+    fragment to its read, where nothing was under way.  Throughput: a fragment a clock
+    while the ports of even and odd units have as many accesses; on one unit two clocks for
+    a visible one.
 
     Members: those of ``DepthTestSignature``.
     """
 
     latency = DepthLane.latency
+    waiting = 2
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
@@ -42,24 +44,16 @@ class DepthTest(wiring.Component):
         """1 or 2."""
         return depth_lanes(self.configuration)
 
-    @property
-    def waiting(self) -> int:
-        """Clocks from a fragment to its read, where nothing was under way."""
-        return 0 if self.lanes == 1 else 2
-
     def elaborate(self, platform):
         m = Module()
         lanes = [DepthLane(configuration=self.configuration) for _ in range(self.lanes)]
         for number, lane in enumerate(lanes):
             m.submodules[f"lane_{number}"] = lane
-        if self.lanes == 1:
-            (lane,) = lanes
-            wiring.connect(m, wiring.flipped(self.fragments), lane.fragments)
-            wiring.connect(m, lane.memory, wiring.flipped(self.memory))
-            m.d.comb += [self.busy.eq(lane.busy), self.forwarded.eq(lane.forwarded)]
-            return m
         levels = self._queues(m, lanes)
-        self._share(m, lanes, levels)
+        if self.lanes == 1:
+            wiring.connect(m, lanes[0].memory, wiring.flipped(self.memory))
+        else:
+            self._share(m, lanes, levels)
         m.d.comb += [
             self.busy.eq(Cat(lane.busy for lane in lanes).any() | Cat(*levels).any()),
             self.forwarded.eq(Cat(lane.forwarded for lane in lanes).any()),
@@ -72,7 +66,7 @@ class DepthTest(wiring.Component):
         for number, lane in enumerate(lanes):
             m.submodules[f"queue_{number}"] = queue = fifo.SyncFIFOBuffered(
                 width=fragment.shape().size, depth=FRAGMENTS_WAITING)
-            mine = fragment.unit[0] == number
+            mine = (fragment.unit[0] == number) | (self.lanes == 1)
             m.d.comb += [
                 queue.w_data.eq(fragment),
                 queue.w_en.eq(self.fragments.valid & mine),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,6 +21,10 @@ from .engine import Engine
 
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
+
+#: A list for one-port units takes so many lines of the scan at least, which is not with every unit
+#: in each line.
+_LEAST_LINES = 16
 
 
 @dataclass(frozen=True)
@@ -68,8 +73,9 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
 
     ``step`` is told what comes next.  Raises as ``bench_run.measure``.
     """
-    lists = [case_lists(case, order) for order in orders for case in cases]
+    shortest = [case_lists(case, order) for order in orders for case in cases]
     for machine in machines:
+        lists = [_long_enough(machine.configuration, case) for case in shortest]
         for begin in range(0, len(lists), _TOGETHER):
             some = lists[begin:begin + _TOGETHER]
             names = ", ".join(case.name for case in some)
@@ -79,6 +85,15 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
                 measured = measure(machine.configuration, some, engine)
             for case, measurement in zip(some, measured, strict=True):
                 yield _row(machine, case, measurement)
+
+
+def _long_enough(configuration: MachineConfiguration, case: CaseLists) -> CaseLists:
+    """``case``, or more of the same triangles, so that every unit is scanned as often as others."""
+    if configuration.memory_ports == 2:
+        return case
+    lines = _LEAST_LINES * configuration.timing.horizontal_total * configuration.clocks_per_pixel
+    times = math.ceil(lines / predict_cycles(configuration, case.once).bound)
+    return case if times == 1 else case_lists(case.name, case.order, times=times)
 
 
 def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order]) -> int:

@@ -105,8 +105,10 @@ def check_case(name: str) -> str:
     return name
 
 
-def case_lists(name: str, order: Order = "visible", seed: int = 1) -> CaseLists:
+def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 1) -> CaseLists:
     """The display lists of a case, of flat colours; ``InputError`` for an unknown name.
+
+    They are ``times`` as long as they must be, but for a mesh, which is long enough.
 
     The peers' triangles have their vertices on pixel centres and no depth.  Here triangle i of
     3n has a slot of depths to itself, and slopes through all of it.  A mesh has depths: each of
@@ -117,7 +119,7 @@ def case_lists(name: str, order: Order = "visible", seed: int = 1) -> CaseLists:
     if name == MESH:
         once, twice = _mesh(order, random)
     else:
-        once, twice = _repeated(_triangles()[name], order, random)
+        once, twice = _repeated(_triangles()[name], times, order, random)
     return CaseLists(name, order, once, twice)
 
 
@@ -126,10 +128,10 @@ def _list(position: NDArray[np.int32], depth: NDArray[np.int64],
     return DisplayList(SIZE, SIZE, position, depth, color, SUB_BITS, DEPTH_BITS)
 
 
-def _repeated(triangles: NDArray[np.int32], order: Order,
+def _repeated(triangles: NDArray[np.int32], times: int, order: Order,
               random: np.random.Generator) -> tuple[DisplayList, DisplayList]:
     least = max(LEAST_TRIANGLES, len(triangles))
-    once = -(-least // len(triangles)) * len(triangles)
+    once = -(-least // len(triangles)) * len(triangles) * times
     total = 3 * once
     position = np.tile(triangles, (total // len(triangles), 1, 1))
     position = (position << SUB_BITS) + (1 << (SUB_BITS - 1))

@@ -241,9 +241,9 @@ def rectangle(configuration, left, top, right, bottom):
 
 
 @pytest.mark.parametrize(("cards", "first", "end", "latency"), [
-    ("PM", 0, 1, 18), ("PMPM", 0, 1, 18), ("PMPMMM", 0, 1, 20), ("PMPMMMMMMM", 0, 1, 20)])
+    ("PM", 0, 1, 20), ("PMPM", 0, 1, 20), ("PMPMMM", 0, 1, 20), ("PMPMMMMMMM", 0, 1, 20)])
 def test_latency(cards, first, end, latency):
-    """From a triangle's strobe to the read of its first fragment; some wait before two lanes."""
+    """From a triangle's strobe to the read of its first fragment."""
     configuration = small_machine(cards)
     packets = [SURVEY, None, draw(rectangle(configuration, 0, 0, 8, 8)), None]
     bench = Bench(configuration, first, end, packets, responses=1)

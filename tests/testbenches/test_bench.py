@@ -203,13 +203,40 @@ def test_wrong_input(arguments, message, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_peer_cases_within_two_percent_and_against_a_baseline(tmp_path, monkeypatch):
-    """On the compiled machine: the four cases of the default, and what a slower commit shows."""
+def test_lists_for_one_port_see_as_much_of_the_scan_in_every_unit(tmp_path):
+    """Sixteen of its lines, each of which is with a quarter of the units only."""
+    bench("one_pixel", "--engine", "model", "--elements", "16", "--ports", "1,2", "--json",
+          tmp_path / "b.json")
+    one, two = json.loads((tmp_path / "b.json").read_text())["rows"]
+    assert two["triangles"] == LEAST_TRIANGLES
+    assert one["triangles"] % LEAST_TRIANGLES == 0
+    line = 4 * 512  # and the blanking
+    assert 16 * line <= one["predicted_cycles"] <= 17 * line
+
+
+@pytest.fixture
+def verilator_alone(monkeypatch):
     try:
         find_verilator()
     except ToolMissingError as missing:
         pytest.skip(f"simulator verilator: {missing}")
     monkeypatch.setattr("cardcage.testbenches.engines.ENGINES", {"verilator": VerilatorEngine})
+
+
+@pytest.mark.usefixtures("verilator_alone")
+def test_one_port_within_five_percent_of_its_bound(tmp_path):
+    """Small triangles: rows without fragments, unequal work, and two accesses a fragment."""
+    bench("random_bbox16", "--elements", "16", "--units", "1", "--ports", "1", "--json",
+          tmp_path / "b.json")
+    (row,) = json.loads((tmp_path / "b.json").read_text())["rows"]
+    print(row["bound"], row["prediction_error"])
+    assert row["bound"]["binding"] == "busiest port" and 0.95 <= row["bound"]["share"] <= 1
+    assert abs(row["prediction_error"]) < 0.02
+
+
+@pytest.mark.usefixtures("verilator_alone")
+def test_peer_cases_within_two_percent_and_against_a_baseline(tmp_path):
+    """On the compiled machine: the four cases of the default, and what a slower commit shows."""
     file = tmp_path / "now.json"
     machine = ["--elements", "1"]
     result = bench(*DEFAULT_CASES, *machine, "--json", file, "--against", BASELINE)

@@ -1,8 +1,7 @@
-"""Clocks that the spans of a processing element take at the ports of its memory units.
+"""How often spans access memory units of one port: its reads, and the writes of visible fragments.
 
-With two ports a fragment takes one clock, seen or not.  With one port the read, the
-write of a visible fragment and the scan's slots share it, in two lanes side by side:
-see ``lanes``.
+With two ports a fragment takes one clock, seen or not.  With one port the two share it
+with the scan's slots, in lanes side by side: see ``lanes``.
 """
 
 from __future__ import annotations
@@ -16,66 +15,45 @@ from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
 from .exact import draw, fragments
-from .lanes import LaneClocks, depth_lanes
+from .lanes import depth_lanes, scan_share
 from .lattice_spans import LatticeSpans
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-def scan_share(configuration: MachineConfiguration) -> float:
-    """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
-    interlace, timing = configuration.interlace, configuration.timing
-    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
-    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
-    return shown / (groups << interlace.y_unit_bits)
 
-
-class PortClocks:
-    """The clocks of all spans of a list, asked for in drawing order; ``after`` was drawn before.
-
-    Exact with two ports.  With one within two percent of the simulated cases, mostly; where
-    the scan is as a list begins is not known, so one that takes less than a few of its lines may be
-    five percent off, and so may one whose units alternate from row to row only.
-    """
+class PortAccesses:
+    """The accesses of all spans of a list to one-port units, asked for in drawing order; ``after``
+    was drawn before."""
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
                  triangles: Triangles, after: DisplayList | None = None) -> None:
         self._configuration = configuration
         self._display_list = display_list
         self._triangles = triangles
-        self._two_ports = configuration.memory_ports == 2
-        self._lanes = LaneClocks(configuration)
         interlace = configuration.interlace
         self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
         self._accesses = np.zeros(interlace.units)
-        if after is not None and not self._two_ports:
+        if after is not None:
             self._nearest = draw(after, shading="flat", x_shift=interlace.x_shift,
                                  y_shift=interlace.y_shift).depth.astype(np.int64).reshape(-1)
 
-    def of(self, spans: LatticeSpans, found: Float64) -> tuple[Float64, Float64]:
-        """float64 (n,) each: clocks of each span, and those that its last accesses take after it;
-        the next call must go on where this one ends.
-
-        ``found``: when the walker has found it at the soonest, in clocks from the first one.
-        """
-        length = spans.length.astype(np.float64)
-        if self._two_ports or not len(length):
-            return length, np.zeros(len(length))
+    def of(self, spans: LatticeSpans) -> Float64:
+        """float64 (n, 3, 2), by lane: fragments of each span, visible ones, and the clocks that
+        their units need for both; the next call must go on where this one ends."""
+        if not len(spans.length):
+            return np.zeros((0, 3, 2))
         reads, writes = self._accesses_of(spans)
         # Units of a block, half of them in each lane.
         block_bits = self._configuration.interlace.unit_bits - spans.x_bits - spans.y_bits
         ways = 1 << np.maximum(block_bits - 1, 0)
-        by_element = np.argsort(spans.element, kind="stable")
-        clocks, left = np.empty(len(length)), np.empty(len(length))
-        element, begin = spans.element[by_element], found[by_element]
-        clocks[by_element], left[by_element] = self._lanes.of(
-            element, begin, *(facts[by_element] for facts in (reads, writes, ways)))
-        return clocks, left
+        work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
+        return np.stack([reads, writes, work], axis=1)
 
     @property
     def bound(self) -> float:
-        """Clocks that the busiest unit's one port is taken by the spans asked for and by the scan;
-        0 with two ports, which never wait."""
+        """Clocks that the busiest unit's one port is taken by the spans asked for and by the
+        scan."""
         return float(self._accesses.max()) / (1 - scan_share(self._configuration))
 
     def _accesses_of(self, spans: LatticeSpans) -> tuple[Int64, Int64]:
