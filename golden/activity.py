@@ -8,7 +8,11 @@ ACTIVITY_BITS = 4
 
 
 class Activity(IntEnum):
-    """What a processing element does in a clock."""
+    """What a processing element does in a clock.
+
+    Fragments that wait in the depth test, before one-port units, have been taken; so these
+    may be at work in a clock without a fragment.
+    """
 
     FRAGMENT = 0  # the depth test took a fragment
     PORT = 1  # a fragment waited: its unit's port had others before it

@@ -37,7 +37,7 @@ from .pipeline import PIPELINE
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-#: From the frame's start to the first fragment's read, from the last one to done.
+#: From the frame's start until the first fragment is taken, from the last one's read to done.
 LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
 
 #: How many triangles the rows that are found ahead belong to, about.

@@ -1,20 +1,21 @@
 """Clocks that a machine takes for a list of triangles, by model instead of simulation.
 
 A triangle costs a processing element clocks of its walker (``element_walks``) and
-clocks of its memory ports (``two_port_element``, ``one_port_element``).  The list is
+clocks of its memory ports (``two_ports``, ``one_port``).  The list is
 followed triangle by triangle, through those elements that keep it::
 
     load   = max(broadcast + queue, the load before + its walk)
-    drawn  = max(drawn before + draw, load + latency + alone)
+    drawn  = max(drawn before + draw, load + latency + alone)    with two ports
 
 The walk is held up where the spans found ahead fill their places, and the broadcast
 where the queue of any element is full.  All rows of a triangle are thought to run
 ahead together; only of its last one is it asked whether there was a place.
 ``cycle_estimate`` is the rough and quick sum of the same parts.
 
-Where a unit has one port each span is followed, and its clocks are a model too: what
-reads, writes and the scan's slots come to on average.  Where the scan is as a list
-begins is not known, so one that takes less than a few of its lines may be five percent off.
+Where units have one port each span is followed by itself, and its clocks are a model
+too: what reads, writes and the scan's slots come to on average.  Where the scan is as a
+list begins is not known, so for a list that takes less than a few scan lines it may
+be five percent off.
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ from numpy.typing import NDArray
 from .configuration import MachineConfiguration
 from .coverage import Triangles
 from .display_list import DisplayList
-from .element_walks import entries_of
+from .element_walks import Entries, entries_of
 from .grid import Grid
-from .lattice_spans import lattice_blocks, lattice_spans
-from .one_port_element import OnePortElement, one_port_costs
+from .lattice_spans import LatticeSpans, lattice_blocks, lattice_spans
+from .one_port import OnePort
 from .pipeline import NEVER, PIPELINE, Drawn, Pipeline
 from .port_accesses import PortAccesses
-from .two_port_element import TwoPortElement, two_port_costs
+from .two_ports import TwoPorts
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -116,39 +117,56 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     triangles = Triangles.of(display_list,
                              Grid.of(display_list, interlace.x_shift, interlace.y_shift))
     blocks = lattice_blocks(configuration)
-    elements = range(configuration.processing_elements)
-    ports = None
-    cage: _Cage
-    if configuration.memory_ports == 1:
-        ports = PortAccesses(configuration, display_list, triangles, after)
-        cage = _Cage([OnePortElement(configuration, element, pipeline) for element in elements],
-                     configuration.fifo_depth, pipeline)
-    else:
-        cage = _Cage([TwoPortElement(pipeline) for _ in elements], configuration.fifo_depth,
-                     pipeline)
+    elements = configuration.processing_elements
+    ports: _Ports = (
+        OnePort(configuration, PortAccesses(configuration, display_list, triangles, after),
+                pipeline)
+        if configuration.memory_ports == 1 else TwoPorts(configuration, pipeline))
+    cage = _Cage(ports.elements, configuration.fifo_depth, pipeline)
     arrivals = None if setup is None else _SetUp(setup, triangles.primitive)
     finished: list[float] = []
-    bound = np.zeros((2, len(elements)))
+    bound = np.zeros((2, elements))
     for spans in lattice_spans(triangles, blocks):
-        entries = entries_of(blocks, len(elements), spans, pipeline)
-        bound += [np.bincount(entries.element, entries.walk, len(elements)),
-                  np.bincount(spans.element, spans.length, len(elements))]
-        costs = (two_port_costs(entries, spans, pipeline) if ports is None
-                 else one_port_costs(entries, spans, ports.of(spans)))
-        kept = list(zip(entries.element.tolist(), entries.walk.tolist(), costs, strict=True))
+        entries = entries_of(blocks, elements, spans, pipeline)
+        bound += [np.bincount(entries.element, entries.walk, elements),
+                  np.bincount(spans.element, spans.length, elements)]
+        pairs = list(zip(entries.element.tolist(), entries.walk.tolist(),
+                         ports.costs(entries, spans), strict=True))
         places = np.searchsorted(entries.triangle, np.arange(spans.end - spans.begin + 1)).tolist()
         for first, end in pairwise(places):
             sent = cage.broadcast(0.0 if arrivals is None else arrivals.arrival())
             if arrivals is not None:
                 arrivals.leaves(sent)
-            for element, walk, cost in kept[first:end]:
+            for element, walk, cost in pairs[first:end]:
                 cage.take(element, walk, cost)
             finished.append(cage.finished)
-    kept_triangles = len(triangles)
-    setup_bound = 0 if setup is None else max(setup.interval * kept_triangles,
-                                              display_list.triangles)
-    return CyclePrediction(np.array(finished), float(setup_bound), float(kept_triangles),
-                           bound.max(axis=0), 0.0 if ports is None else ports.bound)
+    kept = len(triangles)
+    setup_bound = 0 if setup is None else max(setup.interval * kept, display_list.triangles)
+    return CyclePrediction(np.array(finished), float(setup_bound), float(kept), bound.max(axis=0),
+                           ports.bound)
+
+
+class _Element(Protocol):
+    """A processing element, told its triangles in drawing order."""
+
+    def take(self, load: float, cost: Any) -> Drawn:
+        """A triangle that its walker loads then, and what it costs at the ports."""
+
+
+class _Ports(Protocol):
+    """Those of all memory units, and the elements before them.
+
+    ``bound``  clocks that the busiest of them needs at least; 0 where none ever waits
+    """
+
+    @property
+    def elements(self) -> Sequence[_Element]: ...
+
+    @property
+    def bound(self) -> float: ...
+
+    def costs(self, entries: Entries, spans: LatticeSpans) -> Sequence[Any]:
+        """For its element, of each of the pairs."""
 
 
 class _SetUp:
@@ -172,13 +190,6 @@ class _SetUp:
 
     def leaves(self, sent: float) -> None:
         self._sent.append(sent)
-
-
-class _Element(Protocol):
-    """A processing element, told its triangles in drawing order."""
-
-    def take(self, load: float, cost: Any) -> Drawn:
-        """A triangle that its walker loads then, and what it must know of it."""
 
 
 class _Cage:

@@ -2,8 +2,8 @@
 
 A processing element is two servers in a row: the walker, which finds a row a clock,
 and the memory ports, which take clocks for each fragment; between them wait the
-spans that were found ahead.  What the ports take is ``two_port_element`` and
-``one_port_element``.
+spans that were found ahead.  What the ports take is ``two_ports`` and
+``one_port``.
 """
 
 from __future__ import annotations
@@ -20,12 +20,8 @@ Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
 
 
-#: Which element keeps which triangle, the clocks of its walk, and those to each first row.
-Walked = tuple[Bool, Int64, Int64]
-
-
 def walks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
-          pipeline: Pipeline) -> Walked:
+          pipeline: Pipeline) -> tuple[Bool, Int64, Int64]:
     """Which element keeps which triangle, bool (triangles, elements); from its load the clocks to
     the next one, alike; and to the first row of each block, (triangles, blocks).
 
@@ -66,7 +62,8 @@ class Entries:
     ``element``   int64 (pairs,)
     ``walk``      int64 (pairs,): clocks from this load of the walker to the next
     ``pair``      int64 (n,)
-    ``offset``    int64 (n,): clocks from the pair's first row to this one
+    ``offset``    int64 (n,): clocks from the load until this row is found, less those that any row
+                  takes
     ``span``      int64 (n,): which of the spans, or -1 where it is only the triangle's end; a span
                   that crosses several squares is an entry in each
     """

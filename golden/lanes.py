@@ -21,8 +21,9 @@ from .configuration import MachineConfiguration
 
 Float64 = NDArray[np.float64]
 
-#: Of a span, by lane: its fragments, the visible ones, and the clocks that its units need for both.
-SpanAccesses = tuple[list[float], list[float], list[float]]
+#: Of a span three rows, by lane: its fragments, the visible ones, and the clocks that its units
+#: need for both.
+SpanAccesses = list[list[float]]
 
 #: Fragments that can wait before each lane, so that short runs in one unit even out, and rows
 #: without fragments.
@@ -81,7 +82,8 @@ class ElementLanes:
         return max(self._done)
 
     def take(self, begin: float, accesses: SpanAccesses) -> float:
-        """When the next span's first fragment may come, of a span that begins at ``begin``."""
+        """A span with these accesses begins at ``begin``; the clock in which the next one's first
+        fragment may come."""
         (reads, written, worked), done = accesses, self._done
         share = self._shares[int(begin / self._clocks_per_row) % len(self._shares)]
         # A read is lost where one lane writes while the scan has the other.

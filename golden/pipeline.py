@@ -14,15 +14,16 @@ class Pipeline:
     """Facts of the processing element's pipeline, in clocks unless said otherwise.
 
     ``queue``        from a broadcast to the walker's load, where that is idle
-    ``latency``      from the load to the read of the first row's first fragment
+    ``latency``      from the load until the depth test takes the first row's first fragment
     ``found``        from a row's turn in the walker until its first pixel is ready to be valued
     ``spans_ahead``  spans that fit between the walker and the fragments
     ``lead``         by how much the walk runs ahead of the fragments, where they are full
-    ``valued``       from the pixel's valuing to the end of its fragment's read
+    ``valued``       from the pixel's valuing until its fragment has been taken
+    ``waiting``      from a fragment's being taken to its read, where units have one port
     ``first_row``    to find a triangle's first row, in a domain of several blocks of units
     ``block``        from the last row of a block to the first one of the next
     ``again``        from such a domain's last row to the next load
-    ``finish``       from the read of the last fragment until the machine is seen to be done
+    ``finish``       from the last fragment's read until the machine is seen to be done
     """
 
     queue: int = 3
@@ -31,6 +32,7 @@ class Pipeline:
     spans_ahead: int = 16
     lead: int = 5
     valued: int = 6
+    waiting: int = 2
     first_row: int = 2
     block: int = 3
     again: int = 2
@@ -44,7 +46,7 @@ PIPELINE = Pipeline()
 class Drawn(NamedTuple):
     """When an element has drawn a triangle, and all before it.
 
-    ``drawn``   the last fragment's read is taken
+    ``drawn``   the last fragment has been taken by the depth test
     ``walker``  the last span leaves the walker, at the soonest
     ``done``    the last accesses are done
     """

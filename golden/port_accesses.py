@@ -1,7 +1,7 @@
-"""How often spans access memory units of one port: its reads, and the writes of visible fragments.
+"""How often spans access memory units of one port.
 
-With two ports a fragment takes one clock, seen or not.  With one port the two share it
-with the scan's slots, in lanes side by side: see ``lanes``.
+With two ports a fragment takes one clock, seen or not.  One port is shared by reads,
+writes and the scan's slots, in lanes side by side: see ``lanes``.
 """
 
 from __future__ import annotations

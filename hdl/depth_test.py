@@ -66,7 +66,7 @@ class DepthTest(wiring.Component):
         for number, lane in enumerate(lanes):
             m.submodules[f"queue_{number}"] = queue = fifo.SyncFIFOBuffered(
                 width=fragment.shape().size, depth=FRAGMENTS_WAITING)
-            mine = (fragment.unit[0] == number) | (self.lanes == 1)
+            mine = fragment.unit[0] == number if self.lanes == 2 else C(1)
             m.d.comb += [
                 queue.w_data.eq(fragment),
                 queue.w_en.eq(self.fragments.valid & mine),

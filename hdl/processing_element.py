@@ -52,7 +52,7 @@ class ProcessingElement(wiring.Component):
     ahead, at one a clock, triangle after triangle.  Units of two ports take a
     fragment a clock.  Of one port, a visible fragment takes two accesses, so two
     clocks on one unit; on two it takes one where fragments alternate between them,
-    within the few that wait (``DepthTest``).
+    within the few that wait; these also bridge rows without pixels (``DepthTest``).
 
     Members
     -------

@@ -12,9 +12,10 @@ from amaranth.hdl import Fragment
 
 from ..golden.configuration import MachineConfiguration
 from ..golden.cycle_model import SetupTiming, predict_cycles
+from ..golden.lanes import scan_shares
 from ..hdl.triangle_outline import TriangleOutline
 from ..hdl.triangle_setup import TriangleSetup
-from .bench_cases import CaseLists, Order, case_lists
+from .bench_cases import MESH, CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
 from .bench_run import Measurement, measure
 from .engine import Engine
@@ -22,8 +23,8 @@ from .engine import Engine
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
 
-#: A list for one-port units takes so many lines of the scan at least, which is not with every unit
-#: in each line.
+#: A list that one-port units bound takes so many lines of the scan at least, and two of the periods
+#: in which the scan is with each unit.
 _LEAST_LINES = 16
 
 
@@ -75,11 +76,11 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
     """
     shortest = [case_lists(case, order) for order in orders for case in cases]
     for machine in machines:
-        lists = [_long_enough(machine.configuration, case) for case in shortest]
-        for begin in range(0, len(lists), _TOGETHER):
-            some = lists[begin:begin + _TOGETHER]
+        for begin in range(0, len(shortest), _TOGETHER):
+            some = shortest[begin:begin + _TOGETHER]
             names = ", ".join(case.name for case in some)
             step(f"{machine.label}: {names}")
+            some = [_long_enough(machine.configuration, case) for case in some]
             measured: Sequence[Measurement | None] = [None] * len(some)
             if engine is not None:
                 measured = measure(machine.configuration, some, engine)
@@ -88,11 +89,15 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
 
 
 def _long_enough(configuration: MachineConfiguration, case: CaseLists) -> CaseLists:
-    """``case``, or more of the same triangles, so that every unit is scanned as often as others."""
-    if configuration.memory_ports == 2:
+    """``case``, or more of the same triangles, so that every unit is scanned about as often."""
+    if configuration.memory_ports == 2 or case.name == MESH:
         return case
-    lines = _LEAST_LINES * configuration.timing.horizontal_total * configuration.clocks_per_pixel
-    times = math.ceil(lines / predict_cycles(configuration, case.once).bound)
+    prediction = predict_cycles(configuration, case.once, setup=_setup_timing(configuration))
+    if prediction.binding != "busiest port":
+        return case
+    period = len(scan_shares(configuration)) << configuration.interlace.y_shift
+    line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
+    times = math.ceil(max(_LEAST_LINES, 2 * period) * line / prediction.bound)
     return case if times == 1 else case_lists(case.name, case.order, times=times)
 
 

@@ -50,12 +50,16 @@ class BaselineComparison:
         return "\n".join(lines)
 
 
-def load_baseline(path: Path) -> dict[str, int]:
-    """Sustained cycles by row, from what ``--json`` wrote; ``InputError`` for another file."""
+#: Sustained cycles by row and number of triangles.
+Baseline = dict[tuple[str, int], int]
+
+
+def load_baseline(path: Path) -> Baseline:
+    """What ``--json`` wrote; ``InputError`` for another file."""
     try:
         rows = json.loads(path.read_text(encoding="utf-8"))["rows"]
-        return {str(row["key"]): int(row["cycles"]["sustained"]) for row in rows
-                if "cycles" in row}
+        return {(str(row["key"]), int(row["triangles"])): int(row["cycles"]["sustained"])
+                for row in rows if "cycles" in row}
     except FileNotFoundError:
         raise InputError(f"--against: {path}: no such file; write one with --json") from None
     except (OSError, ValueError, KeyError, TypeError):
@@ -63,10 +67,11 @@ def load_baseline(path: Path) -> dict[str, int]:
                          ) from None
 
 
-def against(rows: Sequence[BenchRow], baseline: dict[str, int]) -> BaselineComparison:
+def against(rows: Sequence[BenchRow], baseline: Baseline) -> BaselineComparison:
     """``rows`` beside what they were.  Cycles are exact: any difference is a change."""
-    now = {row.key: row.measured.sustained_cycles for row in rows if row.measured is not None}
+    now = {(row.key, row.triangles): row.measured.sustained_cycles
+           for row in rows if row.measured is not None}
     known = {key: cycles for key, cycles in now.items() if key in baseline}
-    changes = [Change(key, baseline[key], cycles) for key, cycles in known.items()
+    changes = [Change(key[0], baseline[key], cycles) for key, cycles in known.items()
                if cycles != baseline[key]]
     return BaselineComparison(changes, len(known) - len(changes), len(now) - len(known))

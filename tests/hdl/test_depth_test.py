@@ -1,6 +1,8 @@
-"""Two lanes on the lines of one-port units: each pixel as if one fragment came after the other."""
+"""One or two lanes on the lines of one-port units: each pixel as if one fragment came after the
+other."""
 
 import random
+from itertools import cycle
 
 import pytest
 from hdl_bench.depth_tests import (
@@ -116,6 +118,16 @@ def test_one_unit_takes_two_clocks_a_visible_fragment():
     run = Run([fragment(0, index % WORDS, 5, index) for index in range(WORDS)], units=1,
               background=255)
     assert 2 * WORDS <= run.clocks <= 2 * WORDS + run.dut.waiting + 3
+
+
+@pytest.mark.parametrize("cards", ["PM", "PMMMM"])
+def test_ports_work_while_no_fragment_comes(cards):
+    """Bursts of eight, and eight clocks between: a port that is never idle takes as long."""
+    waits = cycle([8] + [0] * 7)
+    run = Run([fragment(0, index % WORDS, 250 - index // WORDS, index) for index in range(160)],
+              units=1, background=255, configuration=small_machine(cards, 16, 16),
+              pause=waits.__next__)
+    assert run.clocks <= 2 * 160 + run.dut.waiting + 3
 
 
 def test_units_of_one_lane_take_a_visible_fragment_a_clock():

@@ -240,11 +240,12 @@ def rectangle(configuration, left, top, right, bottom):
                        "red": 1, "green": 2, "blue": 3}}
 
 
-@pytest.mark.parametrize(("cards", "first", "end", "latency"), [
-    ("PM", 0, 1, 20), ("PMPM", 0, 1, 20), ("PMPMMM", 0, 1, 20), ("PMPMMMMMMM", 0, 1, 20)])
-def test_latency(cards, first, end, latency):
+@pytest.mark.parametrize(("cards", "ports", "first", "end", "latency"), [
+    ("PM", 1, 0, 1, 20), ("PMPM", 1, 0, 1, 20), ("PMPMMM", 1, 0, 1, 20),
+    ("PMPMMMMMMM", 1, 0, 1, 20), ("PM", 2, 0, 1, 18), ("PMPMMM", 2, 0, 1, 18)])
+def test_latency(cards, ports, first, end, latency):
     """From a triangle's strobe to the read of its first fragment."""
-    configuration = small_machine(cards)
+    configuration = small_machine(cards, memory_ports=ports)
     packets = [SURVEY, None, draw(rectangle(configuration, 0, 0, 8, 8)), None]
     bench = Bench(configuration, first, end, packets, responses=1)
     # The survey reads each unit twice, and once more where one is silent.

@@ -208,10 +208,22 @@ def test_lists_for_one_port_see_as_much_of_the_scan_in_every_unit(tmp_path):
     bench("one_pixel", "--engine", "model", "--elements", "16", "--ports", "1,2", "--json",
           tmp_path / "b.json")
     one, two = json.loads((tmp_path / "b.json").read_text())["rows"]
+    assert one["bound"]["binding"] == "busiest port"
     assert two["triangles"] == LEAST_TRIANGLES
     assert one["triangles"] % LEAST_TRIANGLES == 0
     line = 4 * 512  # and the blanking
     assert 16 * line <= one["predicted_cycles"] <= 17 * line
+
+
+def test_lists_are_no_longer_where_ports_do_not_bind(tmp_path):
+    """Set-up takes a hundred times as long, or the broadcast does."""
+    for case, binding, options in (("one_pixel", "set-up", ["16", "--setup", "small"]),
+                                   ("random_bbox16", "broadcast", ["256"])):
+        bench(case, "--engine", "model", "--ports", "1", "--json", tmp_path / "b.json",
+              "--elements", *options)
+        (row,) = json.loads((tmp_path / "b.json").read_text())["rows"]
+        assert row["bound"]["binding"] == binding
+        assert row["triangles"] == case_lists(case).once.triangles
 
 
 @pytest.fixture
@@ -254,6 +266,7 @@ def test_peer_cases_within_two_percent_and_against_a_baseline(tmp_path):
     again = bench("one_pixel", *machine, "--against", file)
     assert "0 slower, 0 faster, 1 the same" in again.output
     facts["rows"][0]["cycles"]["sustained"] -= 1
+    facts["rows"].append(facts["rows"][0] | {"triangles": 2 * LEAST_TRIANGLES})
     file.write_text(json.dumps(facts))
     slower = bench("one_pixel", *machine, "--against", file, status=EXIT_DIFFERENT)
     assert "1 slower" in slower.output and "slower  1x(PMM)" in slower.output
