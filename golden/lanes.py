@@ -29,6 +29,10 @@ SpanAccesses = list[list[float]]
 #: without fragments.
 FRAGMENTS_WAITING = 16
 
+#: Clocks that a lane loses where nothing waited: two to its first read, and one until the first
+#: write has come down its pipeline and the two take turns.
+LANE_START = 3
+
 
 def depth_lanes(configuration: MachineConfiguration) -> int:
     """1 where no processing element has more than one memory unit, or 2."""
@@ -92,6 +96,6 @@ class ElementLanes:
             count = reads[lane]
             if count:
                 pace = 1 - share[lane]
-                done[lane] = max(done[lane], begin) + worked[lane] / pace
+                done[lane] = max(done[lane], begin + LANE_START) + worked[lane] / pace
                 end = max(end, done[lane] - FRAGMENTS_WAITING * worked[lane] / (count * pace))
         return end

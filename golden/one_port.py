@@ -73,4 +73,4 @@ class OnePortElement:
             begun.append(begin)
         drawn = max(drawn, passed)
         self._passed, self._drawn = passed, drawn
-        return Drawn(drawn, begun[0] - pipeline.lead, max(drawn, lanes.done) + pipeline.waiting)
+        return Drawn(drawn, begun[0] - pipeline.lead, max(drawn, lanes.done))

@@ -19,7 +19,6 @@ class Pipeline:
     ``spans_ahead``  spans that fit between the walker and the fragments
     ``lead``         by how much the walk runs ahead of the fragments, where they are full
     ``valued``       from the pixel's valuing until its fragment has been taken
-    ``waiting``      from a fragment's being taken to its read, where units have one port
     ``first_row``    to find a triangle's first row, in a domain of several blocks of units
     ``block``        from the last row of a block to the first one of the next
     ``again``        from such a domain's last row to the next load
@@ -32,7 +31,6 @@ class Pipeline:
     spans_ahead: int = 16
     lead: int = 5
     valued: int = 6
-    waiting: int = 2
     first_row: int = 2
     block: int = 3
     again: int = 2
