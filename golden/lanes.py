@@ -39,18 +39,29 @@ def depth_lanes(configuration: MachineConfiguration) -> int:
     return 1 + any(units > 1 for _, units in domains(configuration.cards))
 
 
+def clocks_per_row(configuration: MachineConfiguration) -> int:
+    """Of the lines of the scan that show a row of the picture, blanking beside it included."""
+    line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
+    return line << configuration.interlace.y_shift
+
+
+def _shown(configuration: MachineConfiguration) -> float:
+    """Of a scan, how much is not blanking."""
+    timing = configuration.timing
+    return timing.horizontal_active * timing.vertical_active / timing.pixels
+
+
 def scan_share(configuration: MachineConfiguration) -> float:
     """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
-    interlace, timing = configuration.interlace, configuration.timing
-    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
+    interlace = configuration.interlace
     groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
-    return shown / (groups << interlace.y_unit_bits)
+    return _shown(configuration) / (groups << interlace.y_unit_bits)
 
 
 def scan_shares(configuration: MachineConfiguration) -> Float64:
     """float64 (rows, elements, 2): of a clock in such a row of the picture, how much the scan
     has of each lane; blanking of both kinds is spread over all.  The rows repeat."""
-    interlace, timing = configuration.interlace, configuration.timing
+    interlace = configuration.interlace
     columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
     rows = 1 << interlace.unit_mask("y").bit_length()
     y, x = np.mgrid[:rows, :columns]
@@ -63,22 +74,20 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     groups = columns >> interlace.group_bits
     read = np.zeros((rows, groups, configuration.processing_elements + 1, 2))
     read[y, x >> interlace.group_bits, owner[unit], lane] = 1
-    shown = timing.horizontal_active * timing.vertical_active / timing.pixels
     clocks = configuration.clocks_per_pixel << interlace.group_bits + interlace.x_shift
-    return np.asarray(read[:, :, :-1].mean(axis=1) * (shown / clocks))
+    return np.asarray(read[:, :, :-1].mean(axis=1) * (_shown(configuration) / clocks))
 
 
 class ElementLanes:
     """The lanes of one processing element, which are told its spans in drawing order.
 
-    The scan begins at clock 0.  ``done`` is when the lanes have done all that they were told.
+    ``shares``: float64 (rows, 2), its own of ``scan_shares``.  The scan begins at clock 0.
+    ``done`` is when the lanes have done all that they were told.
     """
 
-    def __init__(self, configuration: MachineConfiguration, element: int) -> None:
-        timing = configuration.timing
-        clocks_per_line = timing.horizontal_total * configuration.clocks_per_pixel
-        self._clocks_per_row = clocks_per_line << configuration.interlace.y_shift
-        self._shares: list[list[float]] = scan_shares(configuration)[:, element].tolist()
+    def __init__(self, configuration: MachineConfiguration, shares: Float64) -> None:
+        self._clocks_per_row = clocks_per_row(configuration)
+        self._shares: list[list[float]] = shares.tolist()
         self._done = [0.0, 0.0]
 
     @property

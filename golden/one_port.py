@@ -13,7 +13,7 @@ import numpy as np
 
 from .configuration import MachineConfiguration
 from .element_walks import Entries
-from .lanes import ElementLanes, SpanAccesses
+from .lanes import ElementLanes, SpanAccesses, scan_shares
 from .lattice_spans import LatticeSpans
 from .pipeline import NEVER, Drawn, Pipeline
 from .port_accesses import PortAccesses
@@ -29,8 +29,9 @@ class OnePort:
     def __init__(self, configuration: MachineConfiguration, accesses: PortAccesses,
                  pipeline: Pipeline) -> None:
         self._accesses = accesses
-        self.elements = [OnePortElement(configuration, element, pipeline)
-                         for element in range(configuration.processing_elements)]
+        self.elements = [
+            OnePortElement(ElementLanes(configuration, shares), pipeline)
+            for shares in scan_shares(configuration).swapaxes(0, 1)]
 
     @property
     def bound(self) -> float:
@@ -48,12 +49,11 @@ class OnePort:
 
 
 class OnePortElement:
-    """Told its triangles in drawing order; the scan begins at clock 0."""
+    """Told its triangles in drawing order."""
 
-    def __init__(self, configuration: MachineConfiguration, element: int,
-                 pipeline: Pipeline) -> None:
+    def __init__(self, lanes: ElementLanes, pipeline: Pipeline) -> None:
         self._pipeline = pipeline
-        self._lanes = ElementLanes(configuration, element)
+        self._lanes = lanes
         # Of the last spans, when each was begun.
         self._begun = deque([NEVER], pipeline.spans_ahead + 1)
         self._passed = self._drawn = NEVER

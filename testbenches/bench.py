@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from amaranth.hdl import Fragment
 
 from ..golden.configuration import MachineConfiguration
-from ..golden.cycle_model import SetupTiming, predict_cycles
-from ..golden.lanes import scan_shares
+from ..golden.cycle_model import CyclePrediction, SetupTiming, predict_cycles
+from ..golden.lanes import clocks_per_row, scan_shares
 from ..hdl.triangle_outline import TriangleOutline
 from ..hdl.triangle_setup import TriangleSetup
-from .bench_cases import MESH, CaseLists, Order, case_lists
+from .bench_cases import CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
 from .bench_run import Measurement, measure
 from .engine import Engine
@@ -23,9 +23,9 @@ from .engine import Engine
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
 
-#: A list that one-port units bound takes so many lines of the scan at least, and two of the periods
-#: in which the scan is with each unit.
-_LEAST_LINES = 16
+#: A list that one-port units bound takes the scan of so many rows at least, and two of the periods
+#: in which it is with each unit.
+_LEAST_ROWS = 16
 
 
 @dataclass(frozen=True)
@@ -80,25 +80,12 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
             some = shortest[begin:begin + _TOGETHER]
             names = ", ".join(case.name for case in some)
             step(f"{machine.label}: {names}")
-            some = [_long_enough(machine.configuration, case) for case in some]
+            predicted = [_predicted(machine, case) for case in some]
             measured: Sequence[Measurement | None] = [None] * len(some)
             if engine is not None:
-                measured = measure(machine.configuration, some, engine)
-            for case, measurement in zip(some, measured, strict=True):
-                yield _row(machine, case, measurement)
-
-
-def _long_enough(configuration: MachineConfiguration, case: CaseLists) -> CaseLists:
-    """``case``, or more of the same triangles, so that every unit is scanned about as often."""
-    if configuration.memory_ports == 2 or case.name == MESH:
-        return case
-    prediction = predict_cycles(configuration, case.once, setup=_setup_timing(configuration))
-    if prediction.binding != "busiest port":
-        return case
-    period = len(scan_shares(configuration)) << configuration.interlace.y_shift
-    line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
-    times = math.ceil(max(_LEAST_LINES, 2 * period) * line / prediction.bound)
-    return case if times == 1 else case_lists(case.name, case.order, times=times)
+                measured = measure(machine.configuration, [case for case, _ in predicted], engine)
+            for (_, row), measurement in zip(predicted, measured, strict=True):
+                yield replace(row, measured=measurement)
 
 
 def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order]) -> int:
@@ -117,13 +104,26 @@ def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
                        waiting=TriangleOutline.queue_depth, inside=unit.depth)
 
 
-def _row(machine: BenchMachine, case: CaseLists, measured: Measurement | None) -> BenchRow:
+def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> int:
+    """How often the list must be repeated, so that every unit is scanned about as often."""
+    if prediction.binding != "busiest port":
+        return 1
+    rows = max(_LEAST_ROWS, 2 * len(scan_shares(configuration)))
+    return math.ceil(rows * clocks_per_row(configuration) / prediction.bound)
+
+
+def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, BenchRow]:
+    """``case``, longer where it must be, and what the model says of that."""
     configuration = machine.configuration
     setup = _setup_timing(configuration)
     began = time.perf_counter()
     once = predict_cycles(configuration, case.once, setup=setup)
+    if (times := _times(configuration, once)) > 1:
+        case = case_lists(case.name, case.order, times=times)
+        once = predict_cycles(configuration, case.once, setup=setup)
     twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     seconds = time.perf_counter() - began
-    return BenchRow(machine, case.name, case.order, case.once.triangles, measured,
-                    predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
-                    binding=twice.binding, prediction_seconds=seconds)
+    return case, BenchRow(
+        machine, case.name, case.order, case.once.triangles, measured=None,
+        predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
+        binding=twice.binding, prediction_seconds=seconds)

@@ -99,7 +99,7 @@ def lanes_by_clock(spans, waiting):
 
 def through_lanes(machine, reads, writes, found):
     """Clocks of each span, which may come when it is found, and then until all is done."""
-    lanes, now = ElementLanes(machine, 0), 0.0
+    lanes, now = ElementLanes(machine, scan_shares(machine)[:, 0]), 0.0
     clocks, left = [], []
     for place, earliest in enumerate(found):
         begin = max(now, earliest)
@@ -161,8 +161,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
             lanes = np.stack([spans.length, np.zeros(len(spans.length))], axis=1)
             return np.stack([lanes, 0 * lanes, lanes], axis=1)
 
-    monkeypatch.setattr("cardcage.golden.lanes.scan_share", lambda _: 0.0)
-    monkeypatch.setattr("cardcage.golden.lanes.scan_shares", lambda _: np.zeros((1, 2, 2)))
+    monkeypatch.setattr("cardcage.golden.one_port.scan_shares", lambda _: np.zeros((1, 2, 2)))
     one, two = OnePort(configuration, Hidden(), pipeline), TwoPorts(configuration, pipeline)
     costs = zip(one.costs(entries, spans), two.costs(entries, spans), strict=True)
     loads, held = np.zeros((2, 2)), 0
