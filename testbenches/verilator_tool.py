@@ -6,6 +6,7 @@ import importlib.util
 import os
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,9 +37,11 @@ class VerilatorTool:
 
     @property
     def make_flags(self) -> list[str]:
-        """The wheel's makefile names the compilers of the machine that built it, and gives the
-        option for a precompiled header no value: say both anew."""
+        """The wheel's makefile names the compilers of the machine that built it, a ``python`` that
+        need not be on PATH, and gives the option for a precompiled header no value: say all anew.
+        """
         return ["-MAKEFLAGS", f"CXX={self.compiler} LINK={self.compiler} AR=ar "
+                              f"PYTHON3={sys.executable} "
                               "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread"]
 
     def version(self) -> str:

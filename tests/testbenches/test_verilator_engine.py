@@ -34,9 +34,14 @@ except ToolMissingError as missing:
 
 @pytest.fixture(scope="module", autouse=True)
 def cache(tmp_path_factory):
-    """An own cache, so that building is tested and no test finds an old model."""
-    folder = tmp_path_factory.mktemp("cache")
+    """An own cache, so that building is tested and no test finds an old model.  No ``python`` on
+    PATH works: whoever calls ``.venv/bin/cardcage`` by its name often has ``python3`` only.
+    """
+    folder, commands = tmp_path_factory.mktemp("cache"), tmp_path_factory.mktemp("commands")
+    (commands / "python").write_text("#!/bin/sh\nexit 127\n")
+    (commands / "python").chmod(0o755)
     with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", str(commands), prepend=os.pathsep)
         patch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(folder))
         yield folder
 
