@@ -6,17 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from .camera import Camera
-from .display_list import DisplayList
-from .errors import InputError
 from .hard_cases.catalogue import hard_case
-from .lighting import DEFAULT_LIGHTING, Lighting, Shading, check_shading
-from .mesh import Mesh
-from .mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
-from .mesh_files import load_mesh
-from .quantise import PictureFormat
-from .scenes.random_triangles import random_display_list
-from .scenes.registry import (
+from .scene_argument import (
     BuiltInScene,
     DisplayListScene,
     HardCaseScene,
@@ -24,6 +15,15 @@ from .scenes.registry import (
     Scene,
     parse_scene,
 )
+from .scenes.built_in.random_triangles import random_display_list
+from .scenes.camera import Camera
+from .scenes.lighting import DEFAULT_LIGHTING, Lighting, Shading, check_shading
+from .scenes.mesh import Mesh
+from .scenes.mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
+from .scenes.mesh_files import load_mesh
+from .scenes.quantise import PictureFormat
+from .specification.display_list import DisplayList
+from .specification.errors import InputError
 
 DEFAULT_SIZE: Final = 64
 

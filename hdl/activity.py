@@ -4,13 +4,13 @@ from amaranth.hdl import *
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.activity import ACTIVITY_BITS, Activity
+from ..golden.specification.activity import ACTIVITY_BITS, Activity
 
 __all__ = ["ElementActivity", "MachineActivity", "activity_layout"]
 
 
 def activity_layout(elements: int) -> data.ArrayLayout:
-    """One ``golden.activity.Activity`` for each processing element, left to right."""
+    """One ``golden.specification.activity.Activity`` for each processing element, left to right."""
     return data.ArrayLayout(unsigned(ACTIVITY_BITS), elements)
 
 

@@ -21,7 +21,8 @@ from amaranth.hdl import *
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .layouts import broadcast_layout, response_layout
 
 __all__ = [

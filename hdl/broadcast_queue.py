@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .lattice import first_owned, lattice_layout, next_owned, rows_mask
 from .layouts import (
     Operation,

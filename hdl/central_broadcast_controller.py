@@ -4,9 +4,10 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.commands import Fault, Opcode, ResponseKind
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.commands import Fault, Opcode, ResponseKind
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .backplane import BroadcastLines, Connector, PictureLines
 from .frame_tags import FrameTags
 from .layouts import Operation, broadcast_layout, response_layout
@@ -24,7 +25,7 @@ class CentralBroadcastController(wiring.Component):
     After reset it has the processing elements survey their domains and the memory
     units initialise both pictures, and reports: each domain, owned and total
     units, the resolution, the cycles it took.  Then it takes commands in order;
-    every opcode and response is described in ``golden.commands``.  A frame starts
+    every opcode and response is described in ``golden.specification.commands``.  A frame starts
     with a new tag, by which every word is background, in the clock after its
     command where nothing is drawn any more; it waits only for a tag that no word
     has (``FrameTags``).  A finished picture is shown from the start of the next

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from amaranth.lib import wiring
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .broadcast_queue import BroadcastQueue
 from .central_broadcast_controller import CentralBroadcastController
 from .depth_lane import DepthLane

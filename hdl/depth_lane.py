@@ -3,7 +3,7 @@
 from amaranth.hdl import *
 from amaranth.lib import wiring
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .depth_test_signature import DepthTestSignature
 from .interpolator import fragment_layout
 

@@ -3,8 +3,8 @@
 from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.lanes import FRAGMENTS_WAITING, depth_lanes
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.queues import FRAGMENTS_WAITING, depth_lanes
 from .depth_lane import DepthLane
 from .depth_test_signature import DepthTestSignature
 

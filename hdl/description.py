@@ -8,8 +8,9 @@ from importlib.metadata import version
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
-from ..golden import commands
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .components import COMPONENTS
 from .machine import Machine
 from .members import described_ports, stated_timing

@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .delay import delayed
 from .lattice import lattice_layout
 from .limb_products import limb_products, side_by_side
@@ -30,8 +30,8 @@ class EdgeColumns(wiring.Component):
     """start + rows · step of both edges that bound a row, in fixed point, and exact.
 
     The words have as many fraction bits as make the column exact on each row
-    (``golden.setup.carry_edges``), so a row may follow any other, and no edge has
-    to be stepped.  Left of the screen becomes its first column, right of it the
+    (``golden.reference.triangle_setup.carry_edges``), so a row may follow any other, and no edge
+    has to be stepped.  Left of the screen becomes its first column, right of it the
     column after its last, where that can be (``MachineConfiguration.edges_on_screen``).
 
     Latency: ``latency`` clocks.  Throughput: a row a clock.  All stages move together.

@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .delay import delayed
 from .divider import Divider
 from .pipelined_multiplier import PipelinedMultiplier
@@ -24,8 +24,9 @@ class EdgeSetup(wiring.Component):
 
     With the vertex at (x, y) and its first sample line ``distance`` below, the column there is
     the quotient of n = ceil((x · height + distance · run) / unit) + height - 1 by the height
-    (``golden.setup``); carried is its middle, (2n + 1) / 2 height.  The halves of a rounding
-    to nearest come with a bit more of the quotient: floor(v + 1/2) = (floor(2v) + 1) >> 1.
+    (``golden.reference.triangle_setup``); carried is its middle, (2n + 1) / 2 height.  The halves
+    of a rounding to nearest come with a bit more of the quotient: floor(v + 1/2) = (floor(2v) + 1)
+    >> 1.
 
     Latency: ``latency`` clocks to an edge's start, less to its step.  Throughput: an edge every
     ``interval`` clocks; nothing stalls.
@@ -46,7 +47,7 @@ class EdgeSetup(wiring.Component):
     start_done, step_done: Out(1)
         High for one clock with each result.
     start_result, step_result: Out(edge_word_bits)
-        As ``golden.setup.carry_edges`` gives them.
+        As ``golden.reference.triangle_setup.carry_edges`` gives them.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -1,4 +1,5 @@
-"""Narrowings by name, as ``golden.fixed`` has them; each gives an Amaranth expression.
+"""Narrowings by name, as ``golden.specification.fixed_point`` has them; each gives an Amaranth
+expression.
 
 Formats are plain ``Value`` shapes: integer bits above, ``fraction_bits`` below.
 """

@@ -4,8 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.interlace import Interlace
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.interlace import Interlace
 from .lattice import lattice_layout
 
 __all__ = ["LatticeBlock", "PixelAddress", "ScanAddress", "unit_number"]

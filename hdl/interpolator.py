@@ -4,8 +4,9 @@ from amaranth.hdl import *
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .delay import delayed
 from .fixed import floor_shift, saturate, to_signed
 from .fragment_stepper import pixel_layout

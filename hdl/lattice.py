@@ -3,7 +3,7 @@
 from amaranth.hdl import *
 from amaranth.lib import data
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 
 __all__ = ["first_owned", "lattice_layout", "next_owned", "row_offset", "rows_mask"]
 

@@ -3,8 +3,8 @@
 from amaranth.hdl import *
 from amaranth.lib import data, enum
 
-from ..golden import commands
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
 
 __all__ = [
     "Operation",

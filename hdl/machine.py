@@ -7,9 +7,9 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
+from ..golden.specification.configuration import MachineConfiguration
 from .activity import MachineActivity, activity_layout
 from .central_broadcast_controller import CentralBroadcastController
 from .layouts import response_layout

@@ -4,7 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import CHANNEL_BITS, MAXIMUM_TAG_BITS, MAXIMUM_WORDS, MINIMUM_TAG_BITS
+from ..golden.specification.configuration import MAXIMUM_TAG_BITS, MAXIMUM_WORDS, MINIMUM_TAG_BITS
+from ..golden.specification.ranges import CHANNEL_BITS
 
 __all__ = ["MemoryAccess", "lane_layout"]
 

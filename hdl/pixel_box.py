@@ -4,14 +4,14 @@ from amaranth.hdl import *
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .sampling_grid import grid_layout
 
 __all__ = ["PixelBox", "box_layout"]
 
 
 def box_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """As in ``golden.setup.PreparedTriangles``."""
+    """As in ``golden.reference.triangle_setup.PreparedTriangles``."""
     rows, columns = configuration.y_bits, configuration.x_bits
     return data.StructLayout({"top": rows, "middle": rows, "bottom": rows,
                               "left": columns, "right": columns})

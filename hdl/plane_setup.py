@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .delay import delayed
 from .divider import Divider
 from .pipelined_multiplier import PipelinedMultiplier
@@ -52,8 +52,9 @@ class PlaneSetup(wiring.Component):
                    2 · sum of the products + area, odd  for the start
 
     so that the sum is ready when the third slot needs it, and two multipliers do for all.
-    The dividends are those of ``golden.setup``, over twice the area; the bit of the quotient
-    that makes rounding to nearest of it is dropped here: floor(v + 1/2) = (floor(2v) + 1) >> 1.
+    The dividends are those of ``golden.reference.triangle_setup``, over twice the area; the bit of
+    the quotient that makes rounding to nearest of it is dropped here: floor(v + 1/2) = (floor(2v)
+    + 1) >> 1.
 
     Latency: ``latency`` clocks.  Throughput: a slot every ``interval`` clocks; nothing stalls.
 
@@ -85,7 +86,7 @@ class PlaneSetup(wiring.Component):
     done: Out(1)
         High for one clock with each result.
     result: Out(word_bits)
-        As ``golden.setup.Planes`` has it, modulo 2**word_bits.
+        As ``golden.reference.triangle_setup.Planes`` has it, modulo 2**word_bits.
     """
 
     def __init__(self, *, configuration: MachineConfiguration, value_bits: int, word_bits: int):

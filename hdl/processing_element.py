@@ -4,8 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.activity import ACTIVITY_BITS
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.activity import ACTIVITY_BITS
+from ..golden.specification.configuration import MachineConfiguration
 from .activity import ElementActivity
 from .backplane import BroadcastLines, Connector
 from .broadcast_queue import BroadcastQueue

@@ -7,8 +7,8 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.commands import ResponseKind
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.commands import ResponseKind
+from ..golden.specification.configuration import MachineConfiguration
 from .layouts import Operation, response_layout
 
 __all__ = ["ProcessingElementControl"]

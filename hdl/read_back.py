@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .backplane import ProcessingElementLines
 
 __all__ = ["ReadBack"]

@@ -4,8 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
 from .interlace import LatticeBlock
 from .lattice import first_owned, lattice_layout, next_owned
 from .layouts import row_shape, struct_layout, walked_outline_layout

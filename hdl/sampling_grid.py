@@ -4,13 +4,13 @@ from amaranth.hdl import *
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 
 __all__ = ["SamplingGrid", "grid_layout"]
 
 
 def grid_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """The machine's own resolution, as ``golden.grid.Grid`` has it.
+    """The machine's own resolution, as ``golden.specification.sampling_grid.Grid`` has it.
 
     ``width``, ``height``    in pixels
     ``x_shift``, ``y_shift`` log2 of a pixel of it in pixels of the highest resolution

@@ -4,8 +4,9 @@ from amaranth.hdl import *
 from amaranth.lib import data, fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .delay import delayed
 from .layouts import struct_layout
 from .pipelined_multiplier import PipelinedMultiplier
@@ -49,8 +50,8 @@ class TriangleOutline(wiring.Component):
     """Sorts the vertices, finds box and area, and drops what covers nothing.
 
     Triangles without area, or whose box holds no pixel centre, go no further, as in
-    ``golden.setup.prepare``.  The pipeline inside never waits: a triangle is taken only when
-    the queue behind it has a place for it.
+    ``golden.reference.triangle_setup.prepare``.  The pipeline inside never waits: a triangle is
+    taken only when the queue behind it has a place for it.
 
     Latency: ``latency`` clocks where nothing waits.  Throughput: a triangle a clock, kept or
     dropped.

@@ -7,8 +7,9 @@ from amaranth.hdl import *
 from amaranth.lib import data, fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import commands
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification import commands
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .delay import delayed
 from .edge_setup import EdgeSetup, position_bits
 from .layouts import prepared_triangle_layout, struct_layout
@@ -23,7 +24,8 @@ __all__ = ["TriangleSetup"]
 
 
 class TriangleSetup(wiring.Component):
-    """Prepares triangles, bit for bit as ``golden.setup.prepare`` at this machine's resolution.
+    """Prepares triangles, bit for bit as ``golden.reference.triangle_setup.prepare`` at this
+    machine's resolution.
 
     ::
 

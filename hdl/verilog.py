@@ -9,7 +9,7 @@ from amaranth.back import rtlil
 from amaranth.hdl import *
 from amaranth.lib import memory, wiring
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .central_broadcast_controller import CentralBroadcastController
 from .machine import Machine
 from .memory_unit import MemoryUnit

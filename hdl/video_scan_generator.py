@@ -4,7 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.configuration import CHANNEL_BITS, MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.ranges import CHANNEL_BITS
 from .backplane import ScanLines
 from .delay import delayed
 

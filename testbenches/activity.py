@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden.activity import ACTIVITY_BITS, Activity
-from ..golden.commands import OPCODE_BITS, Opcode, ResponseKind
+from ..golden.specification.activity import ACTIVITY_BITS, Activity
+from ..golden.specification.commands import OPCODE_BITS, Opcode, ResponseKind
 
 #: Commands with which a record begins.
 DRAWING = (Opcode.FRAME_START, Opcode.TRIANGLE, Opcode.PREPARED_TRIANGLE)

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..golden.errors import InputError
+from ..golden.specification.errors import InputError
 from .interruption import uninterrupted
 
 #: How the names of temporary folders begin.

@@ -10,9 +10,9 @@ from functools import cache
 
 from amaranth.hdl import Fragment
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.cycle_model import CyclePrediction, SetupTiming, predict_cycles
-from ..golden.lanes import clocks_per_row, scan_shares
+from ..golden.cycles.cycle_model import CyclePrediction, SetupTiming, predict_cycles
+from ..golden.cycles.one_port_lanes import clocks_per_row, scan_shares
+from ..golden.specification.configuration import MachineConfiguration
 from ..hdl.triangle_outline import TriangleOutline
 from ..hdl.triangle_setup import TriangleSetup
 from .bench_cases import CaseLists, Order, case_lists

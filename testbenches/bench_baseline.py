@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..golden.errors import InputError
+from ..golden.specification.errors import InputError
 from .bench import BenchRow
 
 

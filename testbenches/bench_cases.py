@@ -12,9 +12,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden.display_list import DisplayList
-from ..golden.errors import InputError
 from ..golden.scene_display_list import make_display_list
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.errors import InputError
 
 #: The screen of every case.
 SIZE = 512

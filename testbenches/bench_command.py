@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from ..golden.errors import InputError
+from ..golden.specification.errors import InputError
 from .atomic_output import atomic_file, output_errors
 from .bench import bench, steps
 from .bench_baseline import against, load_baseline

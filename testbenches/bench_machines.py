@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.plan import on_screen_machine
+from ..golden.planning.machines import on_screen_machine
+from ..golden.specification.configuration import MachineConfiguration
 from .bench_cases import DEPTH_BITS, SIZE, SUB_BITS
 from .machine_options import SETUPS
 

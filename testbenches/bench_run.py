@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden import commands
-from ..golden.cards import domains
-from ..golden.commands import Opcode, ResponseKind
-from ..golden.configuration import MachineConfiguration
-from ..golden.errors import InputError
-from ..golden.exact import depth_complexity
+from ..golden.reference.exact import depth_complexity
+from ..golden.specification import commands
+from ..golden.specification.card_order import domains
+from ..golden.specification.commands import Opcode, ResponseKind
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.errors import InputError
 from .activity import ActivityRecord
 from .bench_cases import CaseLists, Order
 from .compare import compare

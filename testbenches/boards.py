@@ -8,8 +8,8 @@ from typing import Any
 
 from amaranth.lib import wiring
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.plan import on_screen_machine
+from ..golden.planning.machines import on_screen_machine
+from ..golden.specification.configuration import MachineConfiguration
 from ..hdl.memory_unit import MemoryUnit
 from .bench_cases import DEPTH_BITS, SUB_BITS
 from .domain import Domain

@@ -13,9 +13,15 @@ import click
 from rich.console import Console
 from rich.progress import track
 
-from ..golden.errors import InputError
-from ..golden.fixed import MAX_FRACTION_BITS
-from ..golden.worst_error import INTERPOLANTS, Interpolant, WorstCase, find_worst, stored_errors
+from ..golden.precision.worst_case_search import (
+    INTERPOLANTS,
+    Interpolant,
+    WorstCase,
+    find_worst,
+    stored_errors,
+)
+from ..golden.specification.errors import InputError
+from ..golden.specification.fixed_point import MAX_FRACTION_BITS
 from .command_options import Size
 
 _HEADING = (f"{'':6} {'F':>2}  {'bound':>10}  {'worst':>10}  {'of bound':>8}  {'seed':>4}   "

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import click
 
-from ..golden.errors import InputError
+from ..golden.specification.errors import InputError
 from .interruption import Interrupted, interruptible
 from .simulation import MachineError
 

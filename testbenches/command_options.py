@@ -8,10 +8,10 @@ from typing import Any
 
 import click
 
-from ..golden.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS, PRESETS
-from ..golden.fixed import MAX_FRACTION_BITS
-from ..golden.plan import MAXIMUM_ERROR
-from ..golden.ranges import MAXIMUM_SIZE
+from ..golden.planning.machines import MAXIMUM_ERROR, PRESETS
+from ..golden.specification.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS
+from ..golden.specification.fixed_point import MAX_FRACTION_BITS
+from ..golden.specification.ranges import MAXIMUM_SIZE
 from .machine_options import SETUPS
 
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden import bit_true, exact
-from ..golden.configuration import MachineConfiguration
-from ..golden.display_list import DisplayList
-from ..golden.picture import Picture
-from ..golden.scene_needs import fitted
-from ..golden.setup import scene_fraction_bits
+from ..golden.planning.scene_needs import fitted
+from ..golden.reference import bit_true, exact
+from ..golden.reference.triangle_setup import scene_fraction_bits
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.picture import Picture
 from .simulation import Simulation, expected_video
 
 Color = tuple[int, int, int]

@@ -9,8 +9,8 @@ from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden.cards import domains
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.card_order import domains
+from ..golden.specification.configuration import MachineConfiguration
 from ..hdl.backplane import BroadcastLines, Connector, PictureLines, ScanLines
 from ..hdl.memory_unit import MemoryUnit
 from ..hdl.processing_element import ProcessingElement

@@ -10,8 +10,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden.commands import ResponseKind
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.commands import ResponseKind
+from ..golden.specification.configuration import MachineConfiguration
 from .activity import ActivityRecord
 
 #: Called now and then with the cycles simulated and the responses received so far; with 0 cycles

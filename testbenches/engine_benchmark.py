@@ -14,9 +14,10 @@ from statistics import median
 
 import click
 
-from ..golden.configuration import PRESETS, MachineConfiguration, preset
+from ..golden.planning.machines import PRESETS, preset
+from ..golden.reference.triangle_setup import scene_fraction_bits
 from ..golden.scene_display_list import make_display_list
-from ..golden.setup import scene_fraction_bits
+from ..golden.specification.configuration import MachineConfiguration
 from .engine import Job
 from .pysim_engine import PysimEngine
 from .simulation import frame_job

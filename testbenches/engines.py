@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..golden.errors import InputError
+from ..golden.specification.errors import InputError
 from .engine import Engine, EngineRun, Job, Progress
 from .verilator_tool import ToolMissingError
 

@@ -10,8 +10,8 @@ from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.errors import InputError
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.errors import InputError
 from .atomic_output import atomic_file, output_errors
 from .machine_options import (
     MachineOptions,

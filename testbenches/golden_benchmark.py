@@ -1,7 +1,7 @@
 """How fast the exact reference is: ``python -m cardcage.testbenches.golden_benchmark``.
 
-Draws random small triangles with ``golden.exact`` and, where moderngl and an EGL library are
-there (extra ``opengl``), with the software OpenGL behind it, and prints both times.
+Draws random small triangles with ``golden.reference.exact`` and, where moderngl and an EGL library
+are there (extra ``opengl``), with the software OpenGL behind it, and prints both times.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from statistics import median
 import click
 import numpy as np
 
-from ..golden import exact
-from ..golden.display_list import DisplayList
+from ..golden.reference import exact
 from ..golden.scene_display_list import make_display_list
+from ..golden.specification.display_list import DisplayList
 
 _VERTEX = """
 #version 330

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..golden.hard_cases.catalogue import HARD_CASES
-from ..golden.scenes.registry import HardCaseScene
+from ..golden.scene_argument import HardCaseScene
 
 
 def _listed() -> list[dict[str, str | int | list[str]]]:

@@ -14,14 +14,14 @@ from amaranth.hdl import Module, Signal, unsigned
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ..golden import exact
-from ..golden.configuration import MachineConfiguration
-from ..golden.coverage import Triangles, spans
-from ..golden.display_list import DisplayList
-from ..golden.fixed import exact_fraction_bits
-from ..golden.grid import Grid
-from ..golden.setup import prepare
-from ..golden.worst_error import biased_value
+from ..golden.precision.worst_case_search import biased_value
+from ..golden.reference import exact
+from ..golden.reference.coverage import Triangles, spans
+from ..golden.reference.triangle_setup import prepare
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.fixed_point import exact_fraction_bits
+from ..golden.specification.sampling_grid import Grid
 from ..hdl.fragment_stepper import FragmentStepper
 from ..hdl.interpolator import Interpolator
 from ..hdl.layouts import planes_layout, span_layout

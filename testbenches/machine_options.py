@@ -6,12 +6,13 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
-from ..golden.configuration import MAXIMUM_SETUP_INTERVAL, PRESETS, MachineConfiguration
-from ..golden.display_list import DisplayList
-from ..golden.errors import InputError
-from ..golden.plan import Plan, check_max_error, full_machine, plan
+from ..golden.planning.machine_plan import Plan, plan
+from ..golden.planning.machines import PRESETS, check_max_error, full_machine
+from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
-from ..golden.scenes.registry import DisplayListScene, HardCaseScene, parse_scene
+from ..golden.specification.configuration import MAXIMUM_SETUP_INTERVAL, MachineConfiguration
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.errors import InputError
 
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
@@ -32,7 +33,8 @@ SETUPS: dict[SetupChoice, dict[str, Any]] = {
 class MachineOptions:
     """What can be asked of a machine; None leaves a choice to the preset or the scene.
 
-    ``preset``            a named machine of ``golden.configuration.PRESETS``; the rest overrides it
+    ``preset``            a named machine of ``golden.specification.configuration.PRESETS``; the
+                          rest overrides it
     ``cards``             card order, such as ``4x(PMM)``
     ``size``              width, height of the highest resolution
     ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs

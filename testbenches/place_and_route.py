@@ -19,8 +19,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any, Literal
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.errors import InputError
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.errors import InputError
 from .measurement_cache import keep, measured_once, package_hash, recall
 from .register_bench import BENCH, RAM_PORTS_VERILOG, bench_verilog
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from rich.console import Console
 from rich.table import Table
 
-from ..golden.plan import triangle_bits
+from ..golden.planning.machine_plan import triangle_bits
 from .scene_plan import CYCLE_ACCURACY, ScenePlan
 
 _COLUMNS = ("", "plan", "full", "saves", "because")

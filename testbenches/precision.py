@@ -8,18 +8,18 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.errors import InputError
-from ..golden.precision import (
+from ..golden.planning.scene_needs import fitted
+from ..golden.precision.precision_study import (
     Float32Point,
     FormatPoint,
     FractionBitsPoint,
     PrecisionStudy,
     formats,
 )
+from ..golden.precision.unquantised import unquantised_scene
 from ..golden.scene_display_list import SceneDisplayList
-from ..golden.scene_needs import fitted
-from ..golden.unquantised import unquantised_scene
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.errors import InputError
 from .compare import compare
 from .engines import AUTO
 from .machine_options import MachineOptions, load_scene, plan_machine, resolution_warnings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from ..golden.precision import PictureError
+from ..golden.precision.precision_study import PictureError
 from .place_and_route import Placement
 from .precision import Precision, PrecisionRow
 from .text_table import TextTable

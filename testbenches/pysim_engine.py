@@ -10,7 +10,7 @@ import numpy as np
 from amaranth.hdl import Cat, Const, Shape, Value
 from amaranth.sim import Simulator
 
-from ..golden.commands import ResponseKind
+from ..golden.specification.commands import ResponseKind
 from ..hdl.machine import Machine
 from .activity import ActivityWatch
 from .engine import EngineRun, Job, Progress

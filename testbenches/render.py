@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..golden.configuration import MachineConfiguration
-from ..golden.display_list import DisplayList
-from ..golden.errors import InputError
-from ..golden.exact import depth_complexity
+from ..golden.reference.exact import depth_complexity
 from ..golden.scene_display_list import SceneDisplayList
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.errors import InputError
 from .atomic_output import atomic_file, atomic_folder, output_errors
 from .compare import compare
 from .engine import Progress

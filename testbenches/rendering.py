@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..golden.configuration import MachineConfiguration
 from ..golden.scene_display_list import SceneDisplayList
+from ..golden.specification.configuration import MachineConfiguration
 from .compare import Comparison
 from .simulation import Simulation
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..golden.cards import MEMORY_UNIT, domains
-from ..golden.exact import depth_complexity
+from ..golden.reference.exact import depth_complexity
+from ..golden.specification.card_order import MEMORY_UNIT, domains
 from .activity import ACTIVITY_KINDS
 from .activity_chart import activity_chart, timeline_chart
 from .page import page_environment

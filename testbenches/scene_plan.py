@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..golden.cycle_estimate import CycleEstimate, cards_for_cycles, estimate_cycles
-from ..golden.errors import InputError
-from ..golden.plan import Plan, triangle_bits
+from ..golden.cycles.cycle_estimate import CycleEstimate, cards_for_cycles, estimate_cycles
+from ..golden.planning.machine_plan import Plan, triangle_bits
 from ..golden.scene_display_list import SceneDisplayList
+from ..golden.specification.errors import InputError
 from .machine_options import (
     MachineOptions,
     load_scene,

@@ -7,7 +7,7 @@ import json
 from rich.console import Console
 from rich.table import Table
 
-from ..golden.scenes.registry import list_scenes
+from ..golden.scene_argument import list_scenes
 
 
 def scenes_json() -> str:

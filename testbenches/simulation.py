@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..golden import commands
-from ..golden.cards import domains
-from ..golden.commands import Opcode, ResponseKind
-from ..golden.configuration import MachineConfiguration
-from ..golden.display_list import DisplayList
-from ..golden.interlace import Interlace
-from ..golden.precision import in_finer_words
-from ..golden.scene_needs import fitted
-from ..golden.setup import prepare
+from ..golden.planning.scene_needs import fitted
+from ..golden.reference import triangle_words
+from ..golden.reference.triangle_setup import in_finer_words, prepare
+from ..golden.specification import commands
+from ..golden.specification.card_order import domains
+from ..golden.specification.commands import Opcode, ResponseKind
+from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.display_list import DisplayList
+from ..golden.specification.interlace import Interlace
 from .activity import ActivityRecord
 from .engine import Engine, EngineRun, Job, Progress, Scan
 
@@ -84,7 +84,7 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     fitting = fitted(configuration, display_list)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     if configuration.setup == "hardware" and fraction_bits is None:
-        return [start, *commands.triangles(configuration, fitting), end]
+        return [start, *triangle_words.triangles(configuration, fitting), end]
     interlace = configuration.interlace
     own = configuration.fraction_bits
     prepared = prepare(fitting,
@@ -92,7 +92,7 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
                        shading=configuration.shading,
                        x_shift=interlace.x_shift, y_shift=interlace.y_shift)
     prepared = in_finer_words(prepared, own)
-    return [start, *commands.prepared_triangles(configuration, prepared), end]
+    return [start, *triangle_words.prepared_triangles(configuration, prepared), end]
 
 
 def simulate(

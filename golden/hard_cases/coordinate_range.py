@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..display_list import DisplayList, coordinate_bits
+from ..specification.display_list import DisplayList, coordinate_bits
 from .expectations import ANY_WINDING, NOTHING_DRAWN, Image, covered_once, depths, winners
 from .hard_case import HardCase
 from .screen_lists import SIDE, SUB_BITS, screen_list

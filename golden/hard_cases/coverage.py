@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from ..display_list import DisplayList
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..specification.display_list import DisplayList
 from .expectations import (
     ANY_WINDING,
     NOTHING_DRAWN,

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..display_list import DisplayList
+from ..specification.display_list import DisplayList
 from .expectations import ANY_ORDER, Image, colors, depths, in_pairs, pixels, winners
 from .hard_case import HardCase
 from .screen_lists import FARTHEST, rectangle, screen_list

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display_list import DisplayList
-from ..picture import NO_PRIMITIVE, Picture
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..specification.display_list import DisplayList
+from ..specification.picture import NO_PRIMITIVE, Picture
 from .hard_case import Draw, Expectation
 
 #: Pixel columns and rows, each int64 (height, width).

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..display_list import DisplayList
-from ..picture import Picture
+from ..specification.display_list import DisplayList
+from ..specification.picture import Picture
 
 #: Anything that draws a display list at its own size: a model, or a machine.
 Draw = Callable[[DisplayList], Picture]

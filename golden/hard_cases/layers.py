@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from ..display_list import DisplayList
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..specification.display_list import DisplayList
 from .coordinate_range import FULL_SCREEN
 from .expectations import ANY_ORDER, Image, depths, winners
 from .hard_case import HardCase

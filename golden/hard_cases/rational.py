@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
 
-from ..display_list import DisplayList
-from ..grid import Grid
+from ..specification.display_list import DisplayList
+from ..specification.sampling_grid import Grid
 
 Point = tuple[int, int]
 Color = tuple[int, int, int]

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display_list import DisplayList
-from ..mesh_display_list import DEFAULT_BACKGROUND
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..scenes.mesh_display_list import DEFAULT_BACKGROUND
+from ..specification.display_list import DisplayList
 
 Int64 = NDArray[np.int64]
 

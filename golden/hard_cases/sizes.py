@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from ..display_list import DisplayList
+from ..specification.display_list import DisplayList
 from .expectations import covered_once
 from .hard_case import HardCase
 from .screen_lists import fan, screen_list

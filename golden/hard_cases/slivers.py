@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from ..display_list import DisplayList
+from ..specification.display_list import DisplayList
 from .expectations import ANY_WINDING, covered_once, depths, pixels, winners
 from .hard_case import HardCase
 from .screen_lists import FARTHEST, fan, screen_list

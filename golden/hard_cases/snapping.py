@@ -10,10 +10,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display_list import DisplayList
-from ..mesh_display_list import display_list_of_corners
-from ..quantise import PictureFormat
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..scenes.mesh_display_list import display_list_of_corners
+from ..scenes.quantise import PictureFormat
+from ..specification.display_list import DisplayList
 from .expectations import (
     NOTHING_DRAWN,
     Image,

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from ..display_list import DisplayList
-from ..scenes.random_numbers import RandomNumbers
+from ..scenes.built_in.random_numbers import RandomNumbers
+from ..specification.display_list import DisplayList
 from .expectations import ANY_ORDER, ANY_WINDING, NOTHING_DRAWN, difference, reordered, winners
 from .hard_case import Draw, Expectation, HardCase
 from .screen_lists import FARTHEST, SIDE, screen_list

@@ -1,1 +1,1 @@
-"""Built-in scenes, each written from its public definition."""
+"""Where pictures come from: meshes, camera, light, clipping, quantisation."""

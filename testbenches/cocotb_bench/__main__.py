@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from ...golden.configuration import MachineConfiguration
-from ...golden.display_list import DisplayList
-from ...golden.errors import InputError
-from ...golden.scene_needs import fitted
+from ...golden.planning.scene_needs import fitted
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
 from ..command_group import EXIT_DIFFERENT, EXIT_WRONG_INPUT
 from ..compare import Comparison, compare
 from ..interruption import Interrupted, interruptible

@@ -16,8 +16,8 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge, ReadOnly
 
-from ...golden import commands
-from ...golden.commands import Opcode, ResponseKind
+from ...golden.specification import commands
+from ...golden.specification.commands import Opcode, ResponseKind
 from ..engine import Job
 from ..pace import Pace
 from ..video_monitor import VideoMonitor

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ...golden.cards import MEMORY_UNIT, PROCESSING_ELEMENT
-from ...golden.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
-from ...golden.configuration import MachineConfiguration
+from ...golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
+from ...golden.specification.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
+from ...golden.specification.configuration import MachineConfiguration
 from .violation import ProtocolError
 
 

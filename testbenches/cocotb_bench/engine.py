@@ -14,8 +14,8 @@ import weakref
 from pathlib import Path
 from typing import Any
 
-from ...golden.commands import ResponseKind
-from ...golden.errors import InputError
+from ...golden.specification.commands import ResponseKind
+from ...golden.specification.errors import InputError
 from ...hdl.verilog import machine_verilog
 from ..engine import EngineRun, Job, Progress
 from ..verilator_tool import ToolMissingError

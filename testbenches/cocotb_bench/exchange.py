@@ -10,9 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ...golden.configuration import MachineConfiguration
-from ...golden.errors import InputError
-from ...golden.video_timing import VideoTiming
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.errors import InputError
+from ...golden.specification.video_timing import VideoTiming
 from ..engine import Job, Scan
 
 #: Environment variable that names the folder.

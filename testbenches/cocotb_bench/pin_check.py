@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ...golden.configuration import MachineConfiguration
+from ...golden.specification.configuration import MachineConfiguration
 from .violation import ProtocolError
 
 

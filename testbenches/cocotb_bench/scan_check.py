@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...golden.configuration import MachineConfiguration
+from ...golden.specification.configuration import MachineConfiguration
 from ..engine import Scan
 from .conversation_check import domains
 from .violation import ProtocolError

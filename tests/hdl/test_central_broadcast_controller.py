@@ -16,8 +16,9 @@ from hdl_bench.cage import (
 from hdl_bench.pictures import prepare, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source
 
-from cardcage.golden import commands
-from cardcage.golden.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.hdl.central_broadcast_controller import CentralBroadcastController
 from cardcage.hdl.layouts import Operation
 
@@ -100,7 +101,7 @@ def test_unknown_commands_are_answered_and_passed_over(opcode):
 
 def triangles(configuration, seed, count=12):
     scene = random_triangles(seed, count, width=8, height=8, flat=True)
-    return list(commands.prepared_triangles(configuration, prepare(configuration, scene)))
+    return list(triangle_words.prepared_triangles(configuration, prepare(configuration, scene)))
 
 
 @pytest.mark.parametrize("seed", [None, 0, 1, 2, 3])
@@ -257,8 +258,8 @@ def test_vertices_are_prepared_and_everything_keeps_its_order(seed, interval):
     words, bodies = [commands.frame_start((1, 2, 3))], [(Operation.FRAME_START, None)]
     for part in range(6):
         scene = random_triangles(f"{seed} {part}", pick.randrange(1, 6), width=8, height=8)
-        prepared = commands.prepared_triangles(configuration, prepare(configuration, scene))
-        words += [*(prepared if part % 2 else commands.triangles(configuration, scene))]
+        prepared = triangle_words.prepared_triangles(configuration, prepare(configuration, scene))
+        words += [*(prepared if part % 2 else triangle_words.triangles(configuration, scene))]
         bodies += [(Operation.DRAW, word >> commands.BODY_OFFSET) for word in prepared]
         if part == 2:
             words.append(commands.command(Opcode.READ_COUNTERS))

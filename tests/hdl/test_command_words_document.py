@@ -11,11 +11,14 @@ from hdl_bench.bench import simulate
 from hdl_bench.pictures import exact_words
 from hdl_bench.streams import Sink, Source
 
-from cardcage.golden import commands, setup
-from cardcage.golden.commands import Fault, Opcode, ResponseKind
-from cardcage.golden.configuration import MachineConfiguration, preset
-from cardcage.golden.display_list import DisplayList
-from cardcage.golden.interlace import Interlace
+from cardcage.golden.planning.machines import preset
+from cardcage.golden.reference import triangle_setup as setup
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.golden.specification.interlace import Interlace
 from cardcage.hdl import layouts
 from cardcage.hdl.machine import Machine
 
@@ -243,7 +246,7 @@ def documented_commands():
 def test_example_words():
     scene = example()
     prepared = setup.prepare(scene, fraction_bits=TINY.fraction_bits)
-    (word,) = commands.prepared_triangles(TINY, prepared)
+    (word,) = triangle_words.prepared_triangles(TINY, prepared)
     assert documented_commands() == {
         "FRAME_START": commands.frame_start(scene.background),
         "PREPARED_TRIANGLE": word,

@@ -9,7 +9,7 @@ from hdl_bench.bench import Drive, simulate
 from hdl_bench.pictures import prepare, prepared_values, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden.grid import Grid
+from cardcage.golden.specification.sampling_grid import Grid
 from cardcage.hdl.edge_columns import EdgeColumns
 
 

@@ -1,4 +1,4 @@
-"""Start and step of single edges against ``golden.setup``."""
+"""Start and step of single edges against ``golden.reference.triangle_setup``."""
 
 import random
 
@@ -8,9 +8,9 @@ from hdl_bench.bench import Drive, simulate
 from hdl_bench.pictures import random_triangles, small_machine
 from hdl_bench.pipelines import Results, Starts
 
-from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL
-from cardcage.golden.grid import Grid
-from cardcage.golden.setup import carry_edges, outline
+from cardcage.golden.reference.triangle_setup import carry_edges, outline
+from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
+from cardcage.golden.specification.sampling_grid import Grid
 from cardcage.hdl.edge_setup import EdgeSetup
 
 

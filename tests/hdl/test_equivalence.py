@@ -12,7 +12,7 @@ import pytest
 from amaranth.back import rtlil
 from hdl_bench.verilog_tools import yosys
 
-from cardcage.golden.configuration import MachineConfiguration
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.verilog import component_verilog
 

@@ -1,10 +1,11 @@
-"""The narrowings of the hardware equal those of the same names in ``golden.fixed``."""
+"""The narrowings of the hardware equal those of the same names in
+``golden.specification.fixed_point``."""
 
 import pytest
 from amaranth.hdl import Module, Signal, Value, signed, unsigned
 from hdl_bench.bench import evaluate
 
-from cardcage.golden import fixed as golden
+from cardcage.golden.specification import fixed_point as golden
 from cardcage.hdl import fixed as hdl
 
 WIDTH = 6

@@ -6,7 +6,7 @@ import pytest
 from hdl_bench.bench import evaluate
 from hdl_bench.pictures import small_machine
 
-from cardcage.golden.interlace import interlace_for
+from cardcage.golden.specification.interlace import interlace_for
 from cardcage.hdl.interlace import LatticeBlock, PixelAddress, ScanAddress
 
 UNITS = (1, 2, 4, 8, 16)

@@ -1,4 +1,5 @@
-"""Depth and colour at pixels, against integers modulo a power of two and ``golden.fixed``."""
+"""Depth and colour at pixels, against integers modulo a power of two and
+``golden.specification.fixed_point``."""
 
 import random
 
@@ -7,17 +8,18 @@ from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden import fixed
-from cardcage.golden.commands import CHANNELS
+from cardcage.golden.specification import fixed_point
+from cardcage.golden.specification.commands import CHANNELS
 from cardcage.hdl.interpolator import Interpolator
 
 
 def stored(configuration, carried, bits, limit):
     """What is stored of a carried word, and on which side it was saturated."""
     if configuration.stays_in_range:
-        return fixed.floor_shift(carried, configuration.fraction_bits), 0
-    whole = fixed.floor_shift(fixed.to_signed(carried, bits), configuration.fraction_bits)
-    return fixed.saturate(whole, 0, limit), (whole > limit) - (whole < 0)
+        return fixed_point.floor_shift(carried, configuration.fraction_bits), 0
+    whole = fixed_point.floor_shift(fixed_point.to_signed(carried, bits),
+                                    configuration.fraction_bits)
+    return fixed_point.saturate(whole, 0, limit), (whole > limit) - (whole < 0)
 
 
 class Triangle:

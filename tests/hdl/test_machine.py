@@ -5,11 +5,13 @@ from hdl_bench.bench import Watch, simulate
 from hdl_bench.pictures import exact_words, prepare, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, pauses
 
-from cardcage.golden import commands
-from cardcage.golden.cards import domains
-from cardcage.golden.commands import Opcode, ResponseKind
-from cardcage.golden.configuration import MachineConfiguration, preset
-from cardcage.golden.setup import scene_fraction_bits
+from cardcage.golden.planning.machines import preset
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.reference.triangle_setup import scene_fraction_bits
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.card_order import domains
+from cardcage.golden.specification.commands import Opcode, ResponseKind
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.machine import Machine
 from cardcage.hdl.memory_unit import MemoryUnit
 from cardcage.hdl.processing_element import ProcessingElement
@@ -97,7 +99,7 @@ def test_a_frame_read_back(order):
     machine = Machine(configuration=configuration)
     shares = domains(cards)
     words = [commands.frame_start(scene.background),
-             *commands.prepared_triangles(configuration, prepare(configuration, scene)),
+             *triangle_words.prepared_triangles(configuration, prepare(configuration, scene)),
              commands.command(Opcode.FRAME_END), commands.command(Opcode.READ_DEPTH),
              commands.command(Opcode.READ_COUNTERS)]
     drawn, fragments = exact_words(scene, interlace, flat=True)

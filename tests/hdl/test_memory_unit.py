@@ -9,7 +9,7 @@ from hdl_bench.bench import Agent, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, pauses
 
-from cardcage.golden.interlace import interlace_for
+from cardcage.golden.specification.interlace import interlace_for
 from cardcage.hdl.memory_unit import MemoryUnit
 
 WORDS, TAG_BITS = 16, 3

@@ -5,7 +5,7 @@ import re
 import pytest
 from hdl_bench.verilog_tools import verilator_lint
 
-from cardcage.golden.plan import plan
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.hdl.cell_count import count_cells
 from cardcage.hdl.edge_columns import EdgeColumns

@@ -1,4 +1,4 @@
-"""Start and increments of single interpolants against ``golden.setup``."""
+"""Start and increments of single interpolants against ``golden.reference.triangle_setup``."""
 
 import random
 
@@ -7,7 +7,7 @@ from hdl_bench.bench import Drive, rejects, simulate
 from hdl_bench.pictures import prepare, random_triangles, small_machine
 from hdl_bench.pipelines import Results, Starts
 
-from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL
+from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
 from cardcage.hdl.plane_setup import PlaneSetup, Slot
 
 INPUTS = ("slot", "upper", "first", "second", "factor_1", "factor_2", "offset", "double_area")

@@ -15,8 +15,8 @@ from hdl_bench.pictures import (
 )
 from hdl_bench.streams import Sink, Source, pauses
 
-from cardcage.golden.commands import ResponseKind
-from cardcage.golden.setup import scene_fraction_bits
+from cardcage.golden.reference.triangle_setup import scene_fraction_bits
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.hdl.layouts import Operation
 from cardcage.hdl.processing_element import ProcessingElement
 

@@ -7,7 +7,7 @@ from hdl_bench.bench import Agent, Watch, simulate
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden.commands import ResponseKind
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.hdl.layouts import Operation
 from cardcage.hdl.processing_element_control import ProcessingElementControl
 

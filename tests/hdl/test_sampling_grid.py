@@ -4,7 +4,7 @@ import pytest
 from hdl_bench.bench import Watch, simulate
 from hdl_bench.pictures import small_machine
 
-from cardcage.golden.interlace import interlace_for
+from cardcage.golden.specification.interlace import interlace_for
 from cardcage.hdl.sampling_grid import SamplingGrid
 
 

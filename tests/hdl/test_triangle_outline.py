@@ -1,4 +1,5 @@
-"""Outlines of triangles against the boxes, areas and turns of ``golden.setup``."""
+"""Outlines of triangles against the boxes, areas and turns of
+``golden.reference.triangle_setup``."""
 
 import random
 from dataclasses import replace
@@ -9,9 +10,10 @@ from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden import commands
-from cardcage.golden.grid import Grid
-from cardcage.golden.setup import outline
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.reference.triangle_setup import outline
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.sampling_grid import Grid
 from cardcage.hdl.triangle_outline import TriangleOutline
 from cardcage.hdl.vertex_sort import interpolants
 
@@ -62,7 +64,8 @@ def run(configuration, listed, pause=(no_pause, no_pause)):
     """
     primitives, expected = expected_outlines(configuration, listed)
     dut = TriangleOutline(configuration=configuration)
-    words = [word >> commands.BODY_OFFSET for word in commands.triangles(configuration, listed)]
+    words = [word >> commands.BODY_OFFSET
+             for word in triangle_words.triangles(configuration, listed)]
     source = Source(dut.triangles, words, pause[0])
     sink = Sink(dut.outlines, len(expected), pause[1])
     grid = {name: getattr(configuration.interlace, name)

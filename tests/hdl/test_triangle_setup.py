@@ -1,4 +1,5 @@
-"""Set-up in hardware, every bit of what it gives against ``golden.setup.prepare``."""
+"""Set-up in hardware, every bit of what it gives against
+``golden.reference.triangle_setup.prepare``."""
 
 import random
 from dataclasses import replace
@@ -9,11 +10,13 @@ from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import prepare, prepared_values, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
-from cardcage.golden import commands
-from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL, configure
-from cardcage.golden.display_list import DisplayList
-from cardcage.golden.plan import plan
-from cardcage.golden.scene_needs import fitted
+from cardcage.golden.planning.machine_plan import plan
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.scene_needs import fitted
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
+from cardcage.golden.specification.display_list import DisplayList
 from cardcage.hdl.triangle_setup import TriangleSetup
 
 
@@ -38,7 +41,7 @@ def run(configuration, display_list, pause=(no_pause, no_pause), after=4):
                 prepared_values(configuration, prepare(configuration, display_list))]
     dut = TriangleSetup(configuration=configuration)
     words = [word >> commands.BODY_OFFSET
-             for word in commands.triangles(configuration, display_list)]
+             for word in triangle_words.triangles(configuration, display_list)]
     source = Source(dut.vertices, words, pause[0])
     sink = Sink(dut.triangles, len(expected), pause[1])
     held = []

@@ -5,7 +5,7 @@ import re
 import pytest
 from hdl_bench.verilog_tools import icarus, verilator_lint, yosys
 
-from cardcage.golden.configuration import preset
+from cardcage.golden.planning.machines import preset
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.description import component_for, describe
 from cardcage.hdl.interpolator import fragment_layout

@@ -6,7 +6,7 @@ import pytest
 from hdl_bench.bench import Agent, simulate
 from hdl_bench.pictures import small_machine
 
-from cardcage.golden.commands import CHANNELS
+from cardcage.golden.specification.commands import CHANNELS
 from cardcage.hdl.vertex_sort import VertexSort
 
 

@@ -4,7 +4,7 @@ import pytest
 from hdl_bench.bench import Agent, simulate
 from hdl_bench.pictures import small_machine
 
-from cardcage.golden.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
+from cardcage.golden.specification.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
 from cardcage.hdl.video_scan_generator import VideoScanGenerator
 
 BACKGROUND = 0x123456

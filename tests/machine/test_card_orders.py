@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from frames import check_bit_true, draw, golden_picture, random_list
 
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import simulate
 

@@ -13,7 +13,7 @@ from frames import (
     triangles,
 )
 
-from cardcage.golden.commands import ResponseKind
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches import pysim_engine
 
 

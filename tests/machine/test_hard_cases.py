@@ -7,10 +7,10 @@ colours are compared as they leave the video output, depths as they are read bac
 import numpy as np
 import pytest
 
-from cardcage.golden import bit_true, exact
-from cardcage.golden.configuration import MachineConfiguration
 from cardcage.golden.hard_cases.catalogue import HARD_CASES
-from cardcage.golden.setup import scene_fraction_bits
+from cardcage.golden.reference import bit_true, exact
+from cardcage.golden.reference.triangle_setup import scene_fraction_bits
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.simulation import expected_video, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine
 from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator

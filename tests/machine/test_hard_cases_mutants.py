@@ -15,14 +15,15 @@ import numpy as np
 import pytest
 from amaranth.hdl import Const
 
-from cardcage.golden import bit_true, exact, fixed
-from cardcage.golden import setup as golden_setup
-from cardcage.golden.bit_true import error_bound
-from cardcage.golden.configuration import MachineConfiguration
-from cardcage.golden.grid import Grid
 from cardcage.golden.hard_cases.catalogue import hard_case
 from cardcage.golden.hard_cases.rational import covered
-from cardcage.golden.setup import scene_fraction_bits
+from cardcage.golden.reference import bit_true, exact
+from cardcage.golden.reference import triangle_setup as golden_setup
+from cardcage.golden.reference.bit_true import error_bound
+from cardcage.golden.reference.triangle_setup import scene_fraction_bits
+from cardcage.golden.specification import fixed_point
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.sampling_grid import Grid
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import simulate
 
@@ -105,7 +106,7 @@ def test_slopes_truncated_instead_of_rounded(monkeypatch, record_property):
     display_list = hard_case(name).make()
     bits = scene_fraction_bits(display_list)
     predicted = image(display_list, carried_depths(display_list, bits, rounded=floor))
-    monkeypatch.setattr(fixed, "round_half_up_divide", lambda dividend, divisor:
+    monkeypatch.setattr(fixed_point, "round_half_up_divide", lambda dividend, divisor:
                         dividend // divisor)
     assert_caught(name, display_list, machine_for(display_list, bits), predicted, record_property,
                   "truncated slopes")
@@ -165,7 +166,7 @@ def test_a_depth_word_one_bit_too_narrow(monkeypatch, record_property):
     display_list = hard_case(name).make()
     full = machine_for(display_list, 0).depth_plane_bits
     high = display_list.depth_limit
-    narrow = {pixel: fixed.saturate(fixed.to_signed(depth, full - 1), 0, high)
+    narrow = {pixel: fixed_point.saturate(fixed_point.to_signed(depth, full - 1), 0, high)
               for pixel, depth in carried_depths(display_list, 0).items()}
     unchecked(monkeypatch)
     assert_caught(name, display_list, machine_for(display_list, 0, depth_integer_bits=full - 1),

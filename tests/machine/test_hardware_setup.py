@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from frames import check, check_bit_true, joined, random_list, triangles
 
-from cardcage.golden.commands import OPCODE_BITS, Opcode
-from cardcage.golden.configuration import MAXIMUM_SETUP_INTERVAL, configure
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference.triangle_setup import prepare
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.golden.setup import prepare
+from cardcage.golden.specification.commands import OPCODE_BITS, Opcode
+from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_commands, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine

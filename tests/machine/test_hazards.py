@@ -5,7 +5,7 @@ import pytest
 from amaranth.sim import Simulator
 from frames import PIXEL, check, draw, random_list, triangles
 
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches import pysim_engine
 from cardcage.testbenches.simulation import simulate

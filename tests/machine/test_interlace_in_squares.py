@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from frames import draw, random_list, spans_twice
 
-from cardcage.golden.commands import Fault, ResponseKind
-from cardcage.golden.configuration import configure
-from cardcage.golden.exact import depth_complexity
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference.exact import depth_complexity
+from cardcage.golden.specification.commands import Fault, ResponseKind
 from cardcage.testbenches.engine import Job
 from cardcage.testbenches.pysim_engine import PysimEngine
 

@@ -6,7 +6,7 @@ import pytest
 from amaranth.sim import Simulator
 from frames import check, triangles
 
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.testbenches import pysim_engine
 from cardcage.testbenches.simulation import simulate
 

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from frames import check, check_bit_true, random_list, triangles
 
-from cardcage.golden import commands, exact
-from cardcage.golden.commands import Opcode
-from cardcage.golden.configuration import configure
-from cardcage.golden.cycle_estimate import estimate_cycles
-from cardcage.golden.errors import InputError
-from cardcage.golden.plan import plan
+from cardcage.golden.cycles.cycle_estimate import estimate_cycles
+from cardcage.golden.planning.machine_plan import plan
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.scene_needs import fitted
+from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.golden.scene_needs import fitted
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Opcode
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.scene_plan import CYCLE_ACCURACY
 from cardcage.testbenches.simulation import frame_commands, simulate

@@ -5,8 +5,8 @@ import pytest
 from amaranth.sim import Simulator
 from frames import check, random_list
 
-from cardcage.golden.configuration import PRESETS, preset
-from cardcage.golden.video_timing import STANDARD_TIMINGS
+from cardcage.golden.planning.machines import PRESETS, preset
+from cardcage.golden.specification.video_timing import STANDARD_TIMINGS
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import simulate

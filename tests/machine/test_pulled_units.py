@@ -3,8 +3,8 @@
 import pytest
 from frames import check, golden_picture, random_list
 
-from cardcage.golden.commands import ResponseKind
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engine import Job
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import expected_video, simulate

@@ -5,7 +5,7 @@ from frames import check_bit_true, draw, triangles
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import simulate
 

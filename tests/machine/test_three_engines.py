@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from frames import check, random_list
 
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_job, simulate

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cardcage.golden.commands import ResponseKind
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engine import EngineRun, Job, Progress, Scan
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.render import RenderOptions, prepare_render

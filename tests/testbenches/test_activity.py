@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cardcage.golden.activity import Activity
-from cardcage.golden.commands import ResponseKind
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.activity import Activity
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.activity import (
     ACTIVITY_KINDS,
     BUCKETS,

@@ -13,12 +13,12 @@ from click.testing import CliRunner
 from PIL import Image
 
 from cardcage import testbenches
-from cardcage.golden.configuration import configure
-from cardcage.golden.cycle_model import predict_cycles
-from cardcage.golden.display_list import DisplayList
-from cardcage.golden.errors import InputError
-from cardcage.golden.exact import depth_complexity, draw
-from cardcage.golden.scene_needs import fitted
+from cardcage.golden.cycles.cycle_model import predict_cycles
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.scene_needs import fitted
+from cardcage.golden.reference.exact import depth_complexity, draw
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.bench_cases import (
     DEFAULT_CASES,
     LEAST_TRIANGLES,

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 from refusals import refusal
 
-from cardcage.golden.fixed import exact_fraction_bits
+from cardcage.golden.specification.fixed_point import exact_fraction_bits
 from cardcage.hdl.verilog import component_verilog
 from cardcage.testbenches import board_benchmark, place_and_route
 from cardcage.testbenches.boards import BOARDS

@@ -15,8 +15,8 @@ import pytest
 from click.testing import CliRunner
 from refusals import BAD_SCENES_AND_MACHINES, assert_one_line, listing, refusal
 
-from cardcage.golden.display_list import DisplayList
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.cli import main
 from cardcage.testbenches.report import REPORT_FILES
 

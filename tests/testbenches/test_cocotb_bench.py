@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cardcage.golden.configuration import configure
-from cardcage.golden.errors import InputError
+from cardcage.golden.planning.machines import configure
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.errors import InputError
 from cardcage.hdl.description import describe
 from cardcage.hdl.verilog import machine_verilog
 from cardcage.testbenches.cocotb_bench import simulators

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cardcage.golden.commands import Fault, Opcode, ResponseKind
-from cardcage.golden.configuration import MachineConfiguration
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck, domains
 from cardcage.testbenches.cocotb_bench.pin_check import PinCheck, Pins
 from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cardcage.golden import bit_true, exact
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.compare import compare
 from cardcage.testbenches.simulation import Simulation, Work, expected_video

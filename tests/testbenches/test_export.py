@@ -13,10 +13,9 @@ import pytest
 from click.testing import CliRunner
 from refusals import BAD_SCENES_AND_MACHINES, listing, refusal
 
-from cardcage.golden.configuration import preset
-from cardcage.golden.plan import on_screen_fraction_bits
+from cardcage.golden.planning.machines import on_screen_fraction_bits, preset
+from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.golden.setup import scene_fraction_bits
 from cardcage.testbenches.cli import main
 
 SCENE = "random:n=12,size=8,seed=5"

@@ -6,8 +6,8 @@ import re
 import pytest
 from amaranth.hdl import Fragment
 
-from cardcage.golden.configuration import preset
-from cardcage.golden.errors import InputError
+from cardcage.golden.planning.machines import preset
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches import place_and_route as module
 from cardcage.testbenches.place_and_route import (
     Part,

@@ -12,9 +12,9 @@ import pytest
 from click.testing import CliRunner
 from refusals import BAD_SCENES_AND_MACHINES, refusal
 
-from cardcage.golden.configuration import MachineConfiguration
-from cardcage.golden.errors import InputError
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.cli import main
 from cardcage.testbenches.cocotb_bench.exchange import configuration_of
 from cardcage.testbenches.plan_table import plan_table, plan_text

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from PIL import Image
 from refusals import refusal
 
-from cardcage.golden.plan import plan
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches import precision as module
 from cardcage.testbenches.bench_cases import case_lists
@@ -257,7 +257,7 @@ def test_points(study):
 
 
 def test_the_peers_triangle_has_so_many_fragments():
-    from cardcage.golden.exact import depth_complexity
+    from cardcage.golden.reference.exact import depth_complexity
 
     once = case_lists(PEER_CASE, "visible").once
     assert depth_complexity(once).sum() == PEER_FRAGMENTS * once.triangles
@@ -291,7 +291,7 @@ def test_a_frame_that_differs(recording, tampering, monkeypatch):
 
 
 def test_a_bound_that_is_exceeded(recorded, monkeypatch):
-    monkeypatch.setattr("cardcage.golden.bit_true.error_bound", lambda bits, extent: 1)
+    monkeypatch.setattr("cardcage.golden.reference.bit_true.error_bound", lambda bits, extent: 1)
     result = run(*ARGUMENTS, "--engine", "none")
     assert result.exit_code == 1
     assert re.match(r"FAILED: 0 fraction bits: depth off by \d+ LSB, .*the bound is 1\n",

@@ -11,8 +11,8 @@ import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
 
-from cardcage.golden.activity import Activity
-from cardcage.golden.display_list import DisplayList
+from cardcage.golden.specification.activity import Activity
+from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.activity import ACTIVITY_KINDS, activity_record
 from cardcage.testbenches.activity_chart import activity_chart, timeline_chart, timeline_picture
 from cardcage.testbenches.report import REPORT_FILES, card_groups

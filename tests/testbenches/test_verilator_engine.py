@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cardcage.golden import exact
-from cardcage.golden.configuration import configure
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.hdl import verilog
 from cardcage.testbenches import engines, model_cache

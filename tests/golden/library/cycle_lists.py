@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from cardcage.golden.configuration import MachineConfiguration
-from cardcage.golden.coverage import Triangles
-from cardcage.golden.display_list import DisplayList
-from cardcage.golden.grid import Grid
-from cardcage.golden.lattice_spans import lattice_blocks, lattice_spans
+from cardcage.golden.cycles.element_spans import lattice_blocks, lattice_spans
+from cardcage.golden.reference.coverage import Triangles
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.golden.specification.sampling_grid import Grid
 
 CARDS = ("PM", "PMM", "2x(PM)", "PMPMMM", "4x(PMM)")
 

@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 
-from cardcage.golden.display_list import DisplayList
+from cardcage.golden.specification.display_list import DisplayList
 
 CARDS = "2x(PMM)"
 

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from cardcage.golden import bit_true, commands, exact
-from cardcage.golden.commands import Opcode, ResponseKind
-from cardcage.golden.configuration import configure
-from cardcage.golden.display_list import DisplayList
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference import bit_true, exact
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Opcode, ResponseKind
+from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.engine import Job
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import expected_video, frame_commands, simulate

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from amaranth.hdl import Value
 
-from cardcage.golden.commands import ResponseKind
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.hdl.central_broadcast_controller import CentralBroadcastController
 from cardcage.hdl.layouts import Operation
 

@@ -6,10 +6,11 @@ from math import floor
 
 import numpy as np
 
-from cardcage.golden import commands, setup
-from cardcage.golden.configuration import MachineConfiguration
-from cardcage.golden.display_list import DisplayList
-from cardcage.golden.video_timing import compact_timing
+from cardcage.golden.reference import triangle_setup as setup
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.golden.specification.video_timing import compact_timing
 
 
 def small_machine(cards="PM", width=8, height=8, **changes):

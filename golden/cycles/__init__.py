@@ -1,0 +1,1 @@
+"""How many clocks a machine takes, by model instead of simulation."""

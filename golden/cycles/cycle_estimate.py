@@ -1,0 +1,148 @@
+"""About how many clocks a machine takes to draw a frame, without simulating it.
+
+A processing element finds the rows of its pixels, one a clock, and each fragment
+takes its unit's one port for a read and, where it is visible, a write; or of two
+ports one clock.  The two go on side by side, the rows a few triangles ahead, so of
+each few triangles it takes the longer of
+
+    walk     the rows of all triangles whose bounding boxes hold a pixel of its lattice
+    ports    the accesses of its fragments, slowed down by the scan's slots
+
+and the frame what the busiest processing element takes for all, or a clock for each
+triangle's broadcast.
+Where it errs: how often a fragment is visible is the average for a random order of
+drawing; and many processing elements wait for each other's full queues, so that a
+fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..reference.coverage import Triangles
+from ..reference.exact import depth_complexity
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.errors import InputError
+from ..specification.queues import FRAGMENTS_WAITING
+from ..specification.sampling_grid import Grid
+from .element_latencies import PIPELINE
+from .element_spans import lattice_blocks, lattice_spans
+from .one_port_lanes import scan_share
+from .row_clocks import walks
+
+Float64 = NDArray[np.float64]
+Int64 = NDArray[np.int64]
+
+#: From the frame's start until the first fragment is taken, from the last one's read to done.
+LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
+
+#: How many triangles the rows that are found ahead belong to, about.
+TRIANGLES_AHEAD = 4
+
+#: What is tried for a number of cycles: up to so many processing elements, each with so many units.
+MOST_ELEMENTS = 256
+UNITS_EACH = (1, 2, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class CycleEstimate:
+    """Clocks to draw one frame.
+
+    ``draw``       float64, per processing element
+    ``broadcast``  for all triangles
+    ``fragments``  int64, per processing element; exact
+    """
+
+    draw: Float64
+    broadcast: int
+    fragments: Int64
+
+    @property
+    def total(self) -> int:
+        return round(max(float(self.draw.max(initial=0)), self.broadcast) + LATENCY_CLOCKS)
+
+
+def estimate_cycles(configuration: MachineConfiguration,
+                    display_list: DisplayList) -> CycleEstimate:
+    """How long ``configuration`` takes for ``display_list``; whole arrays, no loop over pixels."""
+    interlace = configuration.interlace
+    shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
+    triangles = Triangles.of(display_list, Grid.of(display_list, **shifts))
+    blocks = lattice_blocks(configuration)
+    elements = configuration.processing_elements
+    written, slots = 0.0, 0.0
+    if configuration.memory_ports == 1:
+        written = visible_share(depth_complexity(display_list, **shifts))
+        slots = scan_share(configuration)
+    draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
+    for spans in lattice_spans(triangles, blocks):
+        count = spans.end - spans.begin
+        places = spans.triangle * elements + spans.element
+        # Writes wait for reads of the same unit: none where units are in turn along the row; where
+        # they are from row to row, those of a row that is longer than what can wait.
+        alone = (interlace.x_unit_bits == spans.x_bits) & (interlace.y_unit_bits == spans.y_bits)
+        waits = np.where(alone, spans.length, np.maximum(spans.length - FRAGMENTS_WAITING, 0))
+        waits[(interlace.x_unit_bits > spans.x_bits) | (~alone & configuration.skew)] = 0
+        clocks = (spans.length + written * waits) / (1 - slots)
+        drawn = np.bincount(places, clocks, count * elements)
+        _, walked, _ = walks(blocks, elements, spans, PIPELINE)
+        draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
+        fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
+    return CycleEstimate(draw, len(triangles), fragments)
+
+
+def _together(clocks: NDArray[Any]) -> NDArray[Any]:
+    """(triangles, elements) → (runs of a few triangles, elements): sums."""
+    padded = np.pad(clocks, ((0, -len(clocks) % TRIANGLES_AHEAD), (0, 0)))
+    return np.asarray(padded.reshape(-1, TRIANGLES_AHEAD, clocks.shape[1]).sum(axis=1))
+
+
+def visible_share(complexity: NDArray[np.int32]) -> float:
+    """Writes per fragment where those of a pixel come in random order of depth.
+
+    Of d fragments the k-th is the nearest so far with probability 1/k, so
+    1 + 1/2 + … + 1/d of them are written.
+    """
+    counts = np.bincount(complexity.ravel())
+    drawn = np.arange(len(counts))
+    written = np.cumsum(np.concatenate([[0.0], 1 / np.maximum(drawn[1:], 1)]))
+    total = int((counts * drawn).sum())
+    return float((counts * written).sum()) / total if total else 0.0
+
+
+def cards_for_cycles(display_list: DisplayList, cycles: int, **fields: Any) -> str:
+    """The cards, with the fewest processing elements and then the fewest memory units, that are
+    estimated to draw ``display_list`` in at most ``cycles``.
+
+    ``fields`` of ``MachineConfiguration`` besides the cards and what the list itself gives.
+    Raises ``InputError`` where more processing elements no longer help.
+    """
+    best: tuple[int, str] | None = None
+    elements, refused = 1, InputError("")
+    while elements <= MOST_ELEMENTS:
+        before = best
+        for units in UNITS_EACH:
+            cards = f"{elements}x(P{'M' * units})" if elements > 1 else "P" + "M" * units
+            try:
+                machine = MachineConfiguration(
+                    cards=cards, width=display_list.width, height=display_list.height,
+                    sub_bits=display_list.sub_bits, depth_bits=display_list.depth_bits, **fields)
+            except InputError as error:  # so few units do not hold the picture
+                refused = error
+                continue
+            total = estimate_cycles(machine, display_list).total
+            if total <= cycles:
+                return cards
+            best = min(best or (total, cards), (total, cards))
+        if before is not None and best == before:
+            break
+        elements *= 2
+    if best is None:
+        raise refused
+    raise InputError(f"cycles: {cycles:,} are too few: the fastest cage, {best[1]}, takes about "
+                     f"{best[0]:,}; allow more, or make the picture smaller")

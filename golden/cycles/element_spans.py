@@ -1,0 +1,184 @@
+"""What of each triangle falls to each processing element, as its walker meets it.
+
+A domain is walked as aligned blocks of units; the pixels of a block form a
+lattice, of single pixels or of squares of them, so a triangle's covered columns in
+a row are cut up among the lattices that have pixels in that row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..reference.coverage import Spans, Triangles, spans
+from ..specification.card_order import domains
+from ..specification.configuration import MachineConfiguration
+from ..specification.interlace import Interlace
+
+Bool = NDArray[np.bool_]
+Int64 = NDArray[np.int64]
+
+#: Rows of triangles cut up at once.
+ROW_LIMIT = 1 << 12
+
+
+@dataclass(frozen=True)
+class LatticeBlock:
+    """An aligned power of two of units: squares ``2**square_bits`` pixels wide, ``2**x_bits`` and
+    ``2**y_bits`` squares apart, from an offset in squares.
+
+    ``shifted``: every other row, from the second on, has its pixels half as far to the side.
+    ``place`` counts the blocks of one processing element, ``element``.
+    """
+
+    element: int
+    place: int
+    x_offset: int
+    y_offset: int
+    x_bits: int
+    y_bits: int
+    square_bits: int
+    shifted: bool
+
+    def x_offset_of(self, row: int) -> int:
+        """Of a row that it owns."""
+        further = self.shifted and row >> self.y_bits & 1
+        return self.x_offset ^ (1 << self.x_bits >> 1 if further else 0)
+
+
+@dataclass(frozen=True, eq=False)
+class LatticeSpans:
+    """The spans of the triangles ``begin`` … ``end`` - 1, in the order of (triangle, element,
+    block, row); int64 (n,) each.  None is empty.
+
+    ``triangle``  counted from ``begin``
+    ``element``   processing element
+    ``block``     index in the list of blocks
+    ``step``      lattice rows that lie in the triangle above this one
+    ``row``       row of the picture
+    ``length``    pixels
+    ``squares``   squares of the lattice that they lie in; 1 where it is one of single pixels
+    ``x_offset`` ``x_bits`` ``y_bits``  of the block in this row
+    ``source``    index of the whole span in ``whole``, the covered columns it is cut from
+    ``rows``      int64 (end - begin, blocks): lattice rows of each triangle in each block
+    ``met``       bool, alike: the triangle's bounding box holds a pixel of the block
+    """
+
+    begin: int
+    end: int
+    triangle: Int64
+    element: Int64
+    block: Int64
+    step: Int64
+    row: Int64
+    length: Int64
+    squares: Int64
+    x_offset: Int64
+    x_bits: Int64
+    y_bits: Int64
+    source: Int64
+    whole: Spans
+    rows: Int64
+    met: Bool
+
+
+def lattice_blocks(configuration: MachineConfiguration) -> list[LatticeBlock]:
+    """The blocks of every processing element, in the order in which they are walked."""
+    interlace = configuration.interlace
+    return [block for element, (first, count) in enumerate(domains(configuration.cards))
+            for block in _blocks(element, first, first + count, interlace,
+                                 configuration.square_bits)]
+
+
+def _blocks(element: int, first: int, end: int, interlace: Interlace,
+            square_bits: int) -> Iterator[LatticeBlock]:
+    place = 0
+    while first < end:
+        largest = (end - first).bit_length() - 1
+        aligned = (first & -first).bit_length() - 1 if first else largest
+        bits = min(largest, aligned)
+        x_bits, y_bits = interlace.stride_bits(bits)
+        x, y = (position >> square_bits for position in interlace.pixel(first, 0))
+        shifted = interlace.shifted(bits)
+        if shifted:  # by its last bit, in rows where the bit of y is 0
+            x |= (first & 1) << x_bits - 1
+        yield LatticeBlock(element, place, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1),
+                           x_bits, y_bits, square_bits, shifted)
+        first += 1 << bits
+        place += 1
+
+
+def lattice_spans(triangles: Triangles, blocks: list[LatticeBlock],
+                  row_limit: int = ROW_LIMIT) -> Iterator[LatticeSpans]:
+    """All triangles, about ``row_limit`` rows at a time."""
+    begin = 0
+    for whole in spans(triangles, row_limit):
+        end = int(whole.triangle[-1]) + 1 if len(whole) else begin
+        if end > begin:
+            yield _cut(triangles, blocks, begin, end, whole)
+            begin = end
+    if begin < len(triangles):  # the last ones cover no pixel
+        none = np.zeros(0, np.int64)
+        yield _cut(triangles, blocks, begin, len(triangles), Spans(none, none, none, none))
+
+
+def _before(position: Int64, offset: Int64 | int, bits: Int64 | int, square_bits: int) -> Int64:
+    """How many owned columns (or rows) there are from 0 up to ``position``, itself left out."""
+    square = position >> square_bits
+    ahead = (offset - square) & ((1 << bits) - 1)
+    squares = -((offset - square) >> bits)
+    within = position & ((1 << square_bits) - 1)
+    return np.asarray((squares << square_bits) + np.where(ahead == 0, within, 0))
+
+
+def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
+         whole: Spans) -> LatticeSpans:
+    facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
+             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits", "shifted")}
+    square_bits = blocks[0].square_bits
+    left, right, top, bottom = (
+        edge[begin:end, np.newaxis].astype(np.int64)
+        for edge in (triangles.left, triangles.right, triangles.top, triangles.bottom))
+    in_y = facts["y_offset"], facts["y_bits"], square_bits
+    # Of shifted rows together.
+    in_x = facts["x_offset"], facts["x_bits"] - facts["shifted"], square_bits
+    above = _before(top, *in_y)
+    rows = _before(bottom, *in_y) - above
+    met = (rows > 0) & (_before(right, *in_x) > _before(left, *in_x))
+
+    parts = []
+    beyond = whole.first + whole.length
+    for x_bits, y_bits in sorted({(block.x_bits, block.y_bits) for block in blocks}):
+        for x_offset in range(1 << x_bits):
+            by_row = np.full(2 << y_bits, -1)
+            for place, block in enumerate(blocks):
+                if (block.x_bits, block.y_bits) == (x_bits, y_bits):
+                    for row in (block.y_offset, block.y_offset + (1 << y_bits)):
+                        if block.x_offset_of(row) == x_offset:
+                            by_row[row] = place
+            length, squares = (
+                _before(last, x_offset, x_bits, bits) - _before(first, x_offset, x_bits, bits)
+                for first, last, bits in (
+                    (whole.first, beyond, square_bits),
+                    (whole.first >> square_bits, ((beyond - 1) >> square_bits) + 1, 0)))
+            if not square_bits or not x_bits:  # one span, whatever it crosses
+                squares = np.ones_like(length)
+            owner = by_row[(whole.row >> square_bits) & ((2 << y_bits) - 1)]
+            found = np.flatnonzero((length > 0) & (owner >= 0))
+            parts.append((found, owner[found], length[found], squares[found],
+                          np.full(len(found), x_offset)))
+    source, number, length, squares, x_offset_of = (
+        np.concatenate(part) for part in zip(*parts, strict=True))
+    triangle = whole.triangle[source] - begin
+    order = np.lexsort((whole.row[source], number, triangle))  # blocks count by element
+    source, number, triangle = source[order], number[order], triangle[order]
+    row = whole.row[source]
+    of_block = {name: values[number] for name, values in facts.items()}
+    step = _before(row, of_block["y_offset"], of_block["y_bits"], square_bits)
+    return LatticeSpans(
+        begin, end, triangle, of_block["element"], number, step - above[triangle, number], row,
+        length[order], squares[order], x_offset_of[order], of_block["x_bits"],
+        of_block["y_bits"], source, whole, rows, met)

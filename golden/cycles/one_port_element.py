@@ -1,0 +1,76 @@
+"""When processing elements whose memory units have one port have drawn their triangles.
+
+How long a span takes depends on what waits before the ports when it comes, and on where the scan
+is; so each is followed by itself, when its turn is.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from itertools import pairwise
+
+import numpy as np
+
+from ..specification.configuration import MachineConfiguration
+from .element_latencies import NEVER, Drawn, Pipeline
+from .element_spans import LatticeSpans
+from .one_port_lanes import ElementLanes, SpanAccesses, scan_shares
+from .port_accesses import PortAccesses
+from .row_clocks import Entries
+
+#: What leaves the walker for a triangle, each with its ``Entries.offset``; None where it is no span
+#: but only the triangle's end.
+OnePortCost = list[tuple[int, SpanAccesses | None]]
+
+
+class OnePort:
+    """The ports of a machine, one of each unit, and the ``elements`` before them."""
+
+    def __init__(self, configuration: MachineConfiguration, accesses: PortAccesses,
+                 pipeline: Pipeline) -> None:
+        self._accesses = accesses
+        self.elements = [
+            OnePortElement(ElementLanes(configuration, shares), pipeline)
+            for shares in scan_shares(configuration).swapaxes(0, 1)]
+
+    @property
+    def bound(self) -> float:
+        """Of the spans whose costs were asked for."""
+        return self._accesses.bound
+
+    def costs(self, entries: Entries, spans: LatticeSpans) -> list[OnePortCost]:
+        """For its element, of each of the pairs; ``spans`` in drawing order."""
+        # A span that crosses several squares is an entry in each.
+        each: list[SpanAccesses] = (
+            self._accesses.of(spans) / spans.squares[:, np.newaxis, np.newaxis]).tolist()
+        found = [(offset, each[span] if span >= 0 else None) for offset, span in zip(
+            entries.offset.tolist(), entries.span.tolist(), strict=True)]
+        return [found[first:end] for first, end in pairwise(entries.first.tolist())]
+
+
+class OnePortElement:
+    """Told its triangles in drawing order."""
+
+    def __init__(self, lanes: ElementLanes, pipeline: Pipeline) -> None:
+        self._pipeline = pipeline
+        self._lanes = lanes
+        # Of the last spans, when each was begun.
+        self._begun = deque([NEVER], pipeline.spans_ahead + 1)
+        self._passed = self._drawn = NEVER
+
+    def take(self, load: float, cost: OnePortCost) -> Drawn:
+        """A triangle that its walker loads then."""
+        pipeline, lanes, begun = self._pipeline, self._lanes, self._begun
+        base, passed, drawn = load + pipeline.latency, self._passed, self._drawn
+        for offset, accesses in cost:
+            begin = max(passed, base + offset)
+            if accesses is None:  # takes a clock, in which fragments before it may wait
+                passed = begin + 1
+            else:
+                begin = max(begin, drawn)
+                drawn = lanes.take(begin, accesses)
+                passed = max(begin + sum(accesses[0]), drawn - 1)
+            begun.append(begin)
+        drawn = max(drawn, passed)
+        self._passed, self._drawn = passed, drawn
+        return Drawn(drawn, begun[0] - pipeline.lead, max(drawn, lanes.done))

@@ -1,0 +1,102 @@
+"""Clocks of a processing element's depth test at the ports of one-port memory units.
+
+A fragment reads, and where it is visible writes, at the one port of its unit, which the
+scan has now and then.  Units with even and with odd numbers are served side by side,
+in two *lanes*: in a clock one lane reads while the other writes.  Where no processing
+element has more than one unit there is one lane.  A few fragments wait before each, so
+a span goes on while a lane is still at work for the one before, and is held up only
+where more would wait than there is room for.
+
+Each lane is followed as one server with so much work, span by span; which line the
+scan is at decides how much of its time it has.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..specification.card_order import domains
+from ..specification.configuration import MachineConfiguration
+from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
+
+Float64 = NDArray[np.float64]
+
+#: Of a span three rows, by lane: its fragments, the visible ones, and the clocks that its units
+#: need for both.
+SpanAccesses = list[list[float]]
+
+#: Clocks that a lane loses where nothing waited: two to its first read, and one until the first
+#: write has come down its pipeline and the two take turns.
+LANE_START = 3
+
+
+def clocks_per_row(configuration: MachineConfiguration) -> int:
+    """Of the lines of the scan that show a row of the picture, blanking beside it included."""
+    line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
+    return line << configuration.interlace.y_shift
+
+
+def _shown(configuration: MachineConfiguration) -> float:
+    """Of a scan, how much is not blanking."""
+    timing = configuration.timing
+    return timing.horizontal_active * timing.vertical_active / timing.pixels
+
+
+def scan_share(configuration: MachineConfiguration) -> float:
+    """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
+    interlace = configuration.interlace
+    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
+    return _shown(configuration) / (groups << interlace.y_unit_bits)
+
+
+def scan_shares(configuration: MachineConfiguration) -> Float64:
+    """float64 (rows, elements, 2): of a clock in such a row of the picture, how much the scan
+    has of each lane; blanking of both kinds is spread over all.  The rows repeat."""
+    interlace = configuration.interlace
+    columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
+    rows = 1 << interlace.unit_mask("y").bit_length()
+    y, x = np.mgrid[:rows, :columns]
+    owner = np.full(interlace.units, configuration.processing_elements)  # orphans' own
+    for element, (first, count) in enumerate(domains(configuration.cards)):
+        owner[first:first + count] = element
+    unit = interlace.unit(x, y)
+    lane = unit & 1 if depth_lanes(configuration) == 2 else unit * 0
+    # A unit reads for a group of pixels at once, at its beginning.
+    groups = columns >> interlace.group_bits
+    read = np.zeros((rows, groups, configuration.processing_elements + 1, 2))
+    read[y, x >> interlace.group_bits, owner[unit], lane] = 1
+    clocks = configuration.clocks_per_pixel << interlace.group_bits + interlace.x_shift
+    return np.asarray(read[:, :, :-1].mean(axis=1) * (_shown(configuration) / clocks))
+
+
+class ElementLanes:
+    """The lanes of one processing element, which are told its spans in drawing order.
+
+    ``shares``: float64 (rows, 2), its own of ``scan_shares``.  The scan begins at clock 0.
+    ``done`` is when the lanes have done all that they were told.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, shares: Float64) -> None:
+        self._clocks_per_row = clocks_per_row(configuration)
+        self._shares: list[list[float]] = shares.tolist()
+        self._done = [0.0, 0.0]
+
+    @property
+    def done(self) -> float:
+        return max(self._done)
+
+    def take(self, begin: float, accesses: SpanAccesses) -> float:
+        """A span with these accesses begins at ``begin``; the clock in which the next one's first
+        fragment may come."""
+        (reads, written, worked), done = accesses, self._done
+        share = self._shares[int(begin / self._clocks_per_row) % len(self._shares)]
+        # A read is lost where one lane writes while the scan has the other.
+        end = begin + reads[0] + reads[1] + written[0] * share[1] + written[1] * share[0]
+        for lane in range(2):
+            count = reads[lane]
+            if count:
+                pace = 1 - share[lane]
+                done[lane] = max(done[lane], begin + LANE_START) + worked[lane] / pace
+                end = max(end, done[lane] - FRAGMENTS_WAITING * worked[lane] / (count * pace))
+        return end

@@ -1,0 +1,103 @@
+"""How often spans access memory units of one port.
+
+With two ports a fragment takes one clock, seen or not.  One port is shared by reads,
+writes and the scan's slots, in lanes side by side: see ``lanes``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..reference.coverage import Triangles
+from ..reference.exact import draw, fragments
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.queues import depth_lanes
+from .element_spans import LatticeSpans
+from .one_port_lanes import scan_share
+
+Float64 = NDArray[np.float64]
+Int64 = NDArray[np.int64]
+
+
+class PortAccesses:
+    """The accesses of all spans of a list to one-port units, asked for in drawing order; ``after``
+    was drawn before."""
+
+    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
+                 triangles: Triangles, after: DisplayList | None = None) -> None:
+        self._configuration = configuration
+        self._display_list = display_list
+        self._triangles = triangles
+        interlace = configuration.interlace
+        self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
+        self._accesses = np.zeros(interlace.units)
+        if after is not None:
+            self._nearest = draw(after, shading="flat", x_shift=interlace.x_shift,
+                                 y_shift=interlace.y_shift).depth.astype(np.int64).reshape(-1)
+
+    def of(self, spans: LatticeSpans) -> Float64:
+        """float64 (n, 3, 2), by lane: fragments of each span, visible ones, and the clocks that
+        their units need for both; the next call must go on where this one ends."""
+        if not len(spans.length):
+            return np.zeros((0, 3, 2))
+        reads, writes = self._accesses_of(spans)
+        # Units of a block, half of them in each lane.
+        block_bits = self._configuration.interlace.unit_bits - spans.x_bits - spans.y_bits
+        ways = 1 << np.maximum(block_bits - 1, 0)
+        work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
+        return np.stack([reads, writes, work], axis=1)
+
+    @property
+    def bound(self) -> float:
+        """Clocks that the busiest unit's one port is taken by the spans asked for and by the
+        scan."""
+        return float(self._accesses.max()) / (1 - scan_share(self._configuration))
+
+    def _accesses_of(self, spans: LatticeSpans) -> tuple[Int64, Int64]:
+        """int64 (n, 2), by lane: fragments of each span, and visible ones, as the pixels are drawn
+        one after another."""
+        interlace = self._configuration.interlace
+        kept = self._triangles.primitive[spans.begin:spans.end]
+        part = replace(self._display_list, **{
+            name: getattr(self._display_list, name)[kept]
+            for name in ("position", "depth", "color")})
+        drawn = fragments(part, shading="flat", x_shift=interlace.x_shift,
+                          y_shift=interlace.y_shift)
+        x, y = drawn.x.astype(np.int64), drawn.y.astype(np.int64)
+        visible = self._visible(y * interlace.width + x, drawn.depth)
+        unit = interlace.unit(x, y)
+        self._accesses += np.bincount(unit, 1 + visible, interlace.units)
+        lane = unit & 1 if depth_lanes(self._configuration) == 2 else unit * 0
+        # Fragments come in the order of the whole spans and of the columns in each.
+        whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
+        counts = np.zeros((2, len(spans.source), 2), np.int64)
+        for bits in np.unique(spans.x_bits).tolist():
+            column = x >> self._configuration.square_bits
+            key = ((whole << bits) | (column & ((1 << bits) - 1))) * 2 + lane
+            here = np.flatnonzero(spans.x_bits == bits)
+            place = (spans.source[here] << bits) | spans.x_offset[here]
+            for number, weights in enumerate((None, visible)):
+                found = np.bincount(key, weights, len(spans.whole) << bits + 1)
+                counts[number, here] = found.reshape(-1, 2)[place]
+        return counts[0], counts[1]
+
+    def _visible(self, pixel: Int64, depth: Int64) -> NDArray[np.bool_]:
+        """Which fragments are nearer than all before them on their pixel; keeps the nearest."""
+        order = np.argsort(pixel, kind="stable")
+        sorted_pixel, sorted_depth = pixel[order], depth[order]
+        first = np.ones(len(order), bool)
+        first[1:] = sorted_pixel[1:] != sorted_pixel[:-1]
+        # Lower by more than any depth from pixel to pixel: the running minimum begins anew there.
+        base = np.cumsum(first) << 33
+        running = np.minimum.accumulate(sorted_depth - base) + base
+        before = self._nearest[sorted_pixel]
+        before[1:] = np.where(first[1:], before[1:], np.minimum(before[1:], running[:-1]))
+        last = np.roll(first, -1)
+        self._nearest[sorted_pixel[last]] = np.minimum(before, sorted_depth)[last]
+        visible = np.empty(len(order), bool)
+        visible[order] = sorted_depth < before
+        return visible

@@ -1,0 +1,1 @@
+"""Which machine a scene needs, and machines for no scene in particular."""

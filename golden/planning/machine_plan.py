@@ -1,0 +1,186 @@
+"""The smallest machine for a display list, and the reason for each of its numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..reference import bit_true
+from ..specification.commands import layout_bits, prepared_triangle_layout
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.errors import InputError
+from .machines import check_max_error, error_fraction_bits, full_machine
+from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
+
+#: What a processing element holds in waiting where there is enough to hold.
+FIFO_DEPTH = MachineConfiguration.fifo_depth
+
+@dataclass(frozen=True)
+class PlanLine:
+    """One number of the machine.
+
+    ``item``    what it is
+    ``value``   in the planned machine
+    ``full``    in the machine for every triangle on a screen of that size
+    ``reason``  what of the scene decides it
+    ``saves``   bits of each triangle broadcast that this alone saves; negative where the
+                scene needs more, None where it does not touch them
+    """
+
+    item: str
+    value: str
+    full: str
+    reason: str
+    saves: int | None = None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """``configuration`` is the machine, ``full`` the one for every triangle on the screen;
+    ``lines`` explain the difference, ``needs`` has the numbers behind them."""
+
+    configuration: MachineConfiguration
+    full: MachineConfiguration
+    needs: SceneNeeds
+    lines: tuple[PlanLine, ...]
+
+
+def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
+         fraction_bits: int | None = None, **rest: Any) -> Plan:
+    """The machine that draws ``display_list`` with the least hardware, on these cards.
+
+    ``max_error``      LSB by which a depth may be off; 0 is exact
+    ``fraction_bits``  None: the fewest for ``max_error``
+    ``rest``           further fields of ``MachineConfiguration``, which are then not planned
+
+    Coverage is exact in any case, and the exact picture is the same as on the machine
+    for the whole screen.  The stored depth keeps the list's ``depth_bits``, since the
+    background's depth is part of the picture.  Planned is for the resolution that the
+    memory holds: with units pulled out, ``scene_needs.fitted`` decides whether the list
+    still fits.  Raises ``InputError``.
+    """
+    check_max_error(max_error)
+    if fraction_bits is not None and max_error:
+        raise InputError("max error: the fraction bits are given as well; leave one of them out")
+    listed = with_sub_bits(display_list, fewest_sub_bits(display_list))
+    size: dict[str, Any] = {"cards": cards, "width": listed.width, "height": listed.height,
+            "depth_bits": listed.depth_bits}
+    rest = {"shading": "flat" if listed.flat else "gouraud"} | rest
+    machine = MachineConfiguration(**size | {"fraction_bits": fraction_bits or 0,
+                                             "sub_bits": listed.sub_bits} | rest)
+    interlace = machine.interlace
+    needs = scene_needs(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    if fraction_bits is None:
+        fraction_bits = needs.exact_fraction_bits
+        if max_error:
+            fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
+    machine = replace(machine, fraction_bits=fraction_bits)
+    planned = replace(machine, **{
+        "coordinate_bits": needs.coordinate_bits,
+        "edge_column_bits": needs.edge_column_bits,
+        "edge_remainder_bits": needs.edge_remainder_bits,
+        "edge_fraction_bits": needs.edge_fraction_bits,
+        "depth_integer_bits": needs.depth_integer_bits(machine),
+        "channel_integer_bits": needs.channel_integer_bits(machine),
+        # Behind one that is drawn all of them can wait.
+        "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
+    } | {name: value for name, value in rest.items() if name != "shading"})
+    full = full_machine(max_error=max_error, **size | {
+        "sub_bits": display_list.sub_bits, "words": planned.words,
+        "clocks_per_pixel": planned.clocks_per_pixel, "timing": planned.timing,
+        "maximum_units": planned.maximum_units, "allow_orphans": planned.allow_orphans})
+    return Plan(planned, full, needs, tuple(_lines(planned, full, needs, max_error)))
+
+
+def triangle_bits(configuration: MachineConfiguration) -> int:
+    """Bits of a triangle as it is broadcast, waits in a FIFO and is held while it is drawn."""
+    return layout_bits(prepared_triangle_layout(configuration))
+
+
+def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: SceneNeeds,
+           max_error: int) -> list[PlanLine]:
+    unit = 1 << planned.sub_bits
+
+    def bits(item: str, name: str, reason: str, **also: Any) -> PlanLine:
+        """A width of the configuration; ``also`` changes with it."""
+        value, before = getattr(planned, name), getattr(full, name)
+        changed = replace(full, **{name: value} | also)
+        return PlanLine(item, str(value), str(before), reason,
+                        triangle_bits(full) - triangle_bits(changed))
+
+    low, high = (f"{coordinate / unit:g}" for coordinate in needs.coordinates)
+    drops = full.sub_bits - planned.sub_bits
+    return [
+        bits("sub-pixel bits", "sub_bits",
+             f"every coordinate is a multiple of {1 << drops}/{unit << drops} pixel" if drops else
+             f"some coordinate is an odd multiple of 1/{unit} pixel" if planned.sub_bits > 1 else
+             "pixel centres need one",
+             coordinate_bits=0, edge_column_bits=0, edge_remainder_bits=0, edge_fraction_bits=0),
+        bits("coordinate bits", "coordinate_bits", f"vertices lie from {low} to {high} pixels"),
+        bits("edge column bits", "edge_column_bits",
+             "edges cross columns {} to {}".format(*needs.columns)),
+        bits("edge remainder bits", "edge_remainder_bits",
+             f"the highest edge is {needs.edge_height:,}/{unit} pixel high", edge_fraction_bits=0),
+        bits("edge fraction bits", "edge_fraction_bits",
+             "an edge's height in sub-pixels, times the rows it is followed down, is at most "
+             f"{needs.edge_rows_height:,}"),
+        _stored_depth(planned, needs),
+        bits("fraction bits", "fraction_bits", _precision(planned, needs, max_error)),
+        _integer("depth", planned, full, needs.greatest_depth, needs),
+        _integer("channel", planned, full, needs.greatest_channel, needs),
+        _interpolants(planned, full, needs),
+        PlanLine("lines", "none", "none", "the scene has triangles only: no line stepper"),
+        PlanLine("words a memory unit", f"{planned.words:,}", f"{full.words:,}",
+                 f"{planned.interlace.width}x{planned.interlace.height} pixels over "
+                 f"{planned.units} units"),
+        PlanLine("FIFO depth", str(planned.fifo_depth), str(full.fifo_depth),
+                 f"{needs.drawn:,} of {needs.triangles:,} triangles may cover a pixel"),
+    ]
+
+
+def _stored_depth(planned: MachineConfiguration, needs: SceneNeeds) -> PlanLine:
+    fits = needs.greatest_depth.bit_length()
+    reason = f"the picture's format: its background lies at depth {planned.depth_background:,}"
+    if fits < planned.depth_bits:
+        reason += f"; {fits} would hold the vertices"
+    return PlanLine("stored depth bits", str(planned.depth_bits), str(planned.depth_bits), reason)
+
+
+def _precision(planned: MachineConfiguration, needs: SceneNeeds, max_error: int) -> str:
+    bits = planned.fraction_bits
+    if bits == needs.exact_fraction_bits:
+        return (f"exact: a triangle of doubled area {needs.exact_double_area:,} sub-pixels reaches "
+                f"{needs.exact_extent} pixels, right and down")
+    error = float(bit_true.error_bound(bits, needs.extent))
+    source = f"at most {max_error:,} LSB asked for" if max_error else "asked for"
+    return (f"{source}: a triangle reaches {needs.extent} pixels, right and down, and then errs by "
+            f"up to {error:.3g}; exact from {needs.exact_fraction_bits}")
+
+
+def _integer(name: str, planned: MachineConfiguration, full: MachineConfiguration,
+             greatest: int, needs: SceneNeeds) -> PlanLine:
+    """The bits of carried depth or of a carried channel above its binary point."""
+    widths = [getattr(machine, f"{name}_plane_bits") - machine.fraction_bits
+              for machine in (planned, full)]
+    if name == "channel" and planned.shading == "flat":
+        return PlanLine("channel integer bits", "-", str(widths[1]), "no channel is interpolated")
+    error = 0 if planned.stays_in_range else needs.error(planned.fraction_bits)
+    changed = replace(full, **{f"{name}_integer_bits": widths[0]})
+    return PlanLine(
+        f"{name} integer bits", str(widths[0]), str(widths[1]),
+        f"a vertex has up to {greatest:,}" + (f", off by up to {error:,}" if error else "")
+        + ("" if planned.stays_in_range else ", and a sign"),
+        triangle_bits(full) - triangle_bits(changed))
+
+
+def _interpolants(planned: MachineConfiguration, full: MachineConfiguration,
+                  needs: SceneNeeds) -> PlanLine:
+    named = {"flat": "depth", "gouraud": "depth, colour"}
+    if planned.shading == "flat":
+        reason = ("every triangle has one colour" if needs.flat else
+                  "flat shading asked for") + ": no colour interpolator"
+    else:
+        reason = "some triangle has more than one colour" if not needs.flat else "asked for"
+    saves = triangle_bits(full) - triangle_bits(replace(full, shading=planned.shading))
+    return PlanLine("interpolants", named[planned.shading], named[full.shading], reason, saves)

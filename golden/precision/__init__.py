@@ -1,0 +1,1 @@
+"""How exact pictures are: error bounds, and scenes against their unquantised selves."""

@@ -1,0 +1,1 @@
+"""Built-in scenes, each written from its public definition."""

@@ -1,0 +1,156 @@
+"""The words between the host and the central broadcast controller, version 3.
+
+One place for the layout: the hardware builds its structures from these tables,
+the host packs its words with them, and ``docs/command-words.md`` describes them.
+A command is one word on the command stream; in a file it is ``command_words``
+32-bit words, least significant first.  The opcode is in the low ``OPCODE_BITS``
+bits, the fields follow from ``BODY_OFFSET`` upwards without gaps.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, TypeAlias
+
+from .configuration import MachineConfiguration
+from .ranges import CHANNEL_BITS
+
+VERSION = 3
+OPCODE_BITS = 4
+BODY_OFFSET = 8
+WORD_BITS = 32
+CHANNELS = ("red", "green", "blue")
+EDGES = ("long", "upper", "lower")
+
+#: Field name → bits, or a nested layout; in order, from the least significant bit.
+Layout: TypeAlias = "dict[str, int | Layout]"
+
+
+class Opcode(IntEnum):
+    """What the host can ask for."""
+
+    FRAME_START = 1  # the back picture is the background colour throughout
+    TRIANGLE = 2  # vertices, for the machine with set-up in hardware
+    PREPARED_TRIANGLE = 3  # increments computed by the host
+    FRAME_END = 4  # finish the picture, show it from the next scan on
+    READ_DEPTH = 5  # send every word of the depth buffer
+    READ_COUNTERS = 6  # send the work of every processing element
+
+
+class ResponseKind(IntEnum):
+    """What the machine answers: ``RESPONSE_KIND_BITS`` of kind below a 32-bit value."""
+
+    DOMAIN = 1  # at boot, per processing element: first unit << 16 | number of units
+    UNITS = 2  # at boot: units in some domain << 16 | total units
+    PICTURE = 3  # at boot: the machine's height << 16 | width
+    BOOTED = 4  # at boot: cycles from reset until both pictures were black
+    FRAME_DRAWN = 5  # cycles from the frame start to the last processing element's done
+    FRAME_SHOWN = 6  # scans that began with the old picture since the frame start
+    DEPTH = 7  # one word of the depth buffer, units in order, addresses ascending
+    FRAGMENTS = 8  # per processing element: fragments tested since the frame start
+    BUSY = 9  # per processing element: cycles it drew since the frame start
+    ERROR = 10  # one of Fault
+
+
+class Fault(IntEnum):
+    """The value of an ``ERROR`` response."""
+
+    UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
+    UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two, or shares that must
+    # be equal are not: nothing is drawn
+
+
+RESPONSE_KIND_BITS = 8
+RESPONSE_VALUE_BITS = 32
+
+
+def plane_layout(bits: int) -> Layout:
+    """An interpolant: its value at the bounding box's corner, its steps per pixel."""
+    return {"start": bits, "step_x": bits, "step_y": bits}
+
+
+def edge_layout(configuration: MachineConfiguration) -> Layout:
+    """An edge's columns, row by row: in fixed point, exact on every row (``setup.carry_edges``)."""
+    return dict.fromkeys(("start", "step"), configuration.edge_word_bits)
+
+
+def planes_layout(configuration: MachineConfiguration) -> Layout:
+    """What is interpolated over a triangle, or constant on it."""
+    layout: Layout = {"depth": plane_layout(configuration.depth_plane_bits)}
+    for channel in CHANNELS:
+        layout[channel] = (CHANNEL_BITS if configuration.shading == "flat"
+                           else plane_layout(configuration.channel_plane_bits))
+    return layout
+
+
+def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``PREPARED_TRIANGLE``; also what is broadcast to the processing elements."""
+    rows, columns = configuration.y_bits, configuration.x_bits
+    return {
+        "top": rows, "middle": rows, "bottom": rows, "left": columns, "right": columns,
+        "long_edge_left": 1,
+        **{edge: edge_layout(configuration) for edge in EDGES},
+        "planes": planes_layout(configuration),
+    }
+
+
+def triangle_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``TRIANGLE``: three vertices as in the display list."""
+    vertex: Layout = {
+        "x": configuration.coordinate_bits,
+        "y": configuration.coordinate_bits,
+        "depth": configuration.depth_bits,
+        **dict.fromkeys(CHANNELS, CHANNEL_BITS),
+    }
+    return {f"vertex_{corner}": vertex for corner in range(3)}
+
+
+def frame_start_layout() -> Layout:
+    """The body of ``FRAME_START``: the background colour."""
+    return dict.fromkeys(CHANNELS, CHANNEL_BITS)
+
+
+def layout_bits(layout: Layout) -> int:
+    return sum(entry if isinstance(entry, int) else layout_bits(entry)
+               for entry in layout.values())
+
+
+def command_words(configuration: MachineConfiguration) -> int:
+    """32-bit words that one command takes in a file."""
+    bits = BODY_OFFSET + max(layout_bits(layout) for layout in (
+        prepared_triangle_layout(configuration), triangle_layout(configuration),
+        frame_start_layout()))
+    return -(-bits // WORD_BITS)
+
+
+def command_bits(configuration: MachineConfiguration) -> int:
+    return command_words(configuration) * WORD_BITS
+
+
+def pack(layout: Layout, values: Any) -> Any:
+    """Lay ``values`` (a nested dict of integers, or of object arrays of them) out as ``layout``
+    says, each taken modulo its field."""
+    word: Any = 0
+    offset = 0
+    for name, entry in layout.items():
+        if isinstance(entry, int):
+            word = word + ((values[name] & ((1 << entry) - 1)) << offset)
+            offset += entry
+        else:
+            word = word + (pack(entry, values[name]) << offset)
+            offset += layout_bits(entry)
+    return word
+
+
+def command(opcode: Opcode, body: int = 0) -> int:
+    return int(opcode) | body << BODY_OFFSET
+
+
+def frame_start(background: tuple[int, int, int]) -> int:
+    return command(Opcode.FRAME_START,
+                   pack(frame_start_layout(), dict(zip(CHANNELS, background, strict=True))))
+
+
+def unpack_response(word: int) -> tuple[ResponseKind, int]:
+    kind = ResponseKind(word & ((1 << RESPONSE_KIND_BITS) - 1))
+    return kind, word >> RESPONSE_KIND_BITS

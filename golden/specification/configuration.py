@@ -1,0 +1,280 @@
+"""The configuration of one machine: every number that its hardware is built from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from .card_order import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
+from .display_list import coordinate_bits
+from .edge_widths import edge_column_bits, edge_fraction_bits, edge_remainder_bits
+from .errors import InputError
+from .fixed_point import MAX_FRACTION_BITS, guard_bits, stays_in_range
+from .interlace import Interlace, interlace_for
+from .ranges import CHANNEL_BITS, FORMAT_RANGES, MAXIMUM_SIZE, check_whole
+from .shading import Shading
+from .video_timing import VideoTiming, video_timing
+
+MAXIMUM_WORDS = 1 << 20  # of one memory unit
+MAXIMUM_BLOCK = 32
+MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
+MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
+MAXIMUM_TAG_BITS = 6
+@dataclass(frozen=True)
+class MachineConfiguration:
+    """What the cards are built for.
+
+    ``cards``             card order, left to right, spelled out or as ``4x(PMM)``
+    ``width``, ``height`` the highest resolution, which commands and scan addresses use
+    ``sub_bits``          sub-pixel bits of a vertex coordinate
+    ``depth_bits``        bits of a stored depth
+    ``fraction_bits``     fraction bits of the interpolants
+    ``shading``           ``"flat"`` builds no colour interpolators
+    ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
+    ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
+    ``fifo_depth``        primitives a processing element can hold in waiting
+    ``block``             side of the squares of pixels in which processing elements interlace, a
+                          power of two; 1 interlaces all memory units pixel by pixel
+    ``skew``              interlaced pixel by pixel, two units of a processing element alternate
+                          along its rows, not only from row to row
+    ``memory_ports``      of a memory unit: 1, shared by all, or 2, as FPGAs have them
+    ``tag_bits``          of the frame's tag beside each depth and colour, which spares the clear
+    ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
+    ``timing``            blanking and sync of a scan; None means the standard one for the size
+    ``allow_orphans``     accept memory units left of every processing element
+    ``setup``             ``"host"``: the host sends prepared triangles; ``"hardware"``: the
+                          controller also takes vertices and prepares them itself
+    ``setup_interval``    clocks that set-up in hardware may take for a division: 1 is a stage for
+                          each step, ``MAXIMUM_SETUP_INTERVAL`` one stage for all
+    ``observe``           the machine also says, in each clock, what every processing element does
+
+    The rest is for a machine that is to draw less than every triangle of the guard band;
+    ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
+
+    ``coordinate_bits``      of a signed vertex coordinate
+    ``edge_column_bits``     of a column on an edge's own rows; signed, where there are more than
+                             a column of the screen needs
+    ``edge_remainder_bits``  of an edge's height, in sub-pixel units
+    ``edge_fraction_bits``   of a carried edge: as many as make its column exact on every row
+    ``depth_integer_bits``   of carried depth, its sign included where it has one
+    ``channel_integer_bits`` of a carried colour channel, likewise
+
+    Raises ``InputError`` where a number is out of range or the cards do not make a machine.
+    """
+
+    cards: str
+    width: int
+    height: int
+    sub_bits: int = 8
+    depth_bits: int = 24
+    fraction_bits: int = 16
+    shading: Shading = "gouraud"
+    words: int = 0
+    maximum_units: int = 0
+    fifo_depth: int = 16
+    block: int = 1
+    skew: bool = False
+    memory_ports: int = 1
+    tag_bits: int = 4
+    clocks_per_pixel: int = 4
+    timing: VideoTiming = field(default=None)  # type: ignore[assignment]
+    allow_orphans: bool = False
+    setup: Literal["host", "hardware"] = "host"
+    setup_interval: int = 1
+    observe: bool = False
+    coordinate_bits: int = 0
+    edge_column_bits: int = 0
+    edge_remainder_bits: int = 0
+    edge_fraction_bits: int = 0
+    depth_integer_bits: int = 0
+    channel_integer_bits: int = 0
+
+    def __post_init__(self) -> None:
+        def fix(name: str, value: Any) -> None:
+            object.__setattr__(self, name, value)
+
+        if not isinstance(self.cards, str):
+            raise InputError(f"cards: {self.cards!r} is no card order; write one such as 2x(PMM)")
+        fix("cards", parse_cards(self.cards))
+        for name, low, high in (
+            *FORMAT_RANGES,
+            ("fraction_bits", 0, MAX_FRACTION_BITS),
+            ("words", 0, MAXIMUM_WORDS),
+            ("maximum_units", 0, MAXIMUM_SIZE),
+            ("fifo_depth", 2, 4096),
+            ("block", 1, MAXIMUM_BLOCK),
+            ("memory_ports", 1, 2),
+            ("tag_bits", MINIMUM_TAG_BITS, MAXIMUM_TAG_BITS),
+            ("clocks_per_pixel", 2, 256),
+            ("setup_interval", 1, MAXIMUM_SETUP_INTERVAL),
+            ("depth_integer_bits", 0, 64),
+            ("channel_integer_bits", 0, 64),
+        ):
+            check_whole(name, getattr(self, name), low, high)
+        if self.shading not in ("flat", "gouraud"):
+            raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")
+        if self.setup not in ("host", "hardware"):
+            raise InputError(f"setup: {self.setup!r} is neither host nor hardware")
+        for name, most in self._widest().items():
+            check_whole(name, getattr(self, name), 0, most)
+            fix(name, getattr(self, name) or most)
+        most = edge_fraction_bits(self.edge_remainder_bits, self.height)
+        check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
+        fix("edge_fraction_bits", self.edge_fraction_bits or most)
+        if not self.allow_orphans:
+            check_cards(self.cards)
+        self._check_block()
+        if not self.words:
+            full = Interlace(self.units.bit_length() - 1, self.width, self.height,
+                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             skew=self.skew)
+            if full.words > MAXIMUM_WORDS:
+                raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
+                                 f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
+                                 "add memory units or make the picture smaller")
+            fix("words", full.words)
+        if not self.maximum_units:
+            fix("maximum_units", self.units)
+        if self.maximum_units < self.units:
+            raise InputError(f"maximum_units: the ID lines carry {self.maximum_units}, the cage "
+                             f"holds {self.units} memory units")
+        if self.timing is None:
+            fix("timing", video_timing(self.width, self.height))
+        if (self.timing.horizontal_active, self.timing.vertical_active) != (self.width,
+                                                                            self.height):
+            raise InputError(f"timing: shows {self.timing.horizontal_active}x"
+                             f"{self.timing.vertical_active}, the machine draws "
+                             f"{self.width}x{self.height}")
+
+    def _check_block(self) -> None:
+        if self.block & (self.block - 1):
+            raise InputError(f"block: must be a power of two, such as 1, 4 or {MAXIMUM_BLOCK}, not "
+                             f"{self.block}")
+        if self.block == 1:
+            return
+        if self.skew:
+            raise InputError(f"skew: in squares of {self.block}x{self.block} pixels units "
+                             "alternate along the rows already; leave it out, or interlace pixel "
+                             "by pixel (block 1)")
+        squares = f"block: squares of {self.block}x{self.block} pixels"
+        shares = {units for _, units in domains(self.cards)}
+        if len(shares) > 1 and not self.allow_orphans:
+            raise InputError(f"{squares} want as many memory units behind each processing element, "
+                             f"not {' and '.join(map(str, sorted(shares)))}; change the cards, or "
+                             "interlace pixel by pixel (1)")
+        if self.share_bits > 2 * self.square_bits:
+            raise InputError(f"{squares} do not spread over {1 << self.share_bits} memory units; "
+                             f"make them larger, or interlace pixel by pixel (1)")
+
+    def _widest(self) -> dict[str, int]:
+        """The widths at which every triangle of the guard band fits."""
+        coordinate = coordinate_bits(self.width, self.height, self.sub_bits)
+        return {
+            "coordinate_bits": coordinate,
+            "edge_column_bits": edge_column_bits(coordinate, self.sub_bits),
+            "edge_remainder_bits": edge_remainder_bits(coordinate),
+        }
+
+    # Cards
+
+    @property
+    def units(self) -> int:
+        return self.cards.count(MEMORY_UNIT)
+
+    @property
+    def processing_elements(self) -> int:
+        return self.cards.count(PROCESSING_ELEMENT)
+
+    @property
+    def id_bits(self) -> int:
+        """ID lines on the backplane: enough for the total, not only the last unit's number."""
+        return self.maximum_units.bit_length()
+
+    @property
+    def interlace(self) -> Interlace:
+        """The interlace this cage settles on at boot."""
+        return self._interlace_of(self.units)
+
+    def interlaces(self) -> tuple[Interlace, ...]:
+        """One for every number of units the cards must be ready for, fewest first."""
+        return tuple(self._interlace_of(1 << bits) for bits in
+                     range(self.share_bits, self.maximum_units.bit_length()))
+
+    def _interlace_of(self, units: int) -> Interlace:
+        return interlace_for(self.width, self.height, words=self.words, units=units,
+                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             skew=self.skew)
+
+    @property
+    def aligned_domains(self) -> bool:
+        """Every domain that draws is one aligned block of units, a power of two of them."""
+        return self.block > 1 or self.maximum_units <= 2
+
+    # Widths: each with its reason
+
+    @property
+    def x_bits(self) -> int:
+        """0 … width, the exclusive end of a span included."""
+        return self.width.bit_length()
+
+    @property
+    def y_bits(self) -> int:
+        return self.height.bit_length()
+
+    @property
+    def address_bits(self) -> int:
+        return max(1, (self.words - 1).bit_length())
+
+    @property
+    def square_bits(self) -> int:
+        """Log2 of the side of the squares that processing elements interlace in."""
+        return self.block.bit_length() - 1
+
+    @property
+    def share_bits(self) -> int:
+        """Log2 of the memory units of each processing element, where they interlace in squares.
+
+        Of the cards as built: with boards pulled out so that shares differ it draws nothing.
+        """
+        if self.block == 1:
+            return 0
+        return max(1, *(units for _, units in domains(self.cards))).bit_length() - 1
+
+    @property
+    def edges_on_screen(self) -> bool:
+        """No edge's column is off the screen, and none is signed."""
+        return self.edge_column_bits <= self.x_bits
+
+    @property
+    def edge_word_bits(self) -> int:
+        return self.edge_column_bits + self.edge_fraction_bits
+
+    @property
+    def stays_in_range(self) -> bool:
+        """Interpolants err by so little that they are carried unsigned, and never saturate."""
+        return stays_in_range(self.fraction_bits, self.width + self.height - 2)
+
+    @property
+    def depth_plane_bits(self) -> int:
+        """Carried depth; sums wrap, values at covered pixels fit with their error."""
+        return self._plane_bits(self.depth_integer_bits, self.depth_bits)
+
+    @property
+    def channel_plane_bits(self) -> int:
+        return self._plane_bits(self.channel_integer_bits, CHANNEL_BITS)
+
+    def _plane_bits(self, integer_bits: int, value_bits: int) -> int:
+        if not integer_bits:
+            integer_bits = value_bits
+            if not self.stays_in_range:
+                integer_bits += guard_bits(value_bits, self.fraction_bits,
+                                           self.width + self.height - 2)
+        return integer_bits + self.fraction_bits
+
+    @property
+    def depth_background(self) -> int:
+        return (1 << self.depth_bits) - 1
+
+    @property
+    def cycles_per_scan(self) -> int:
+        return self.timing.pixels * self.clocks_per_pixel

@@ -1,0 +1,25 @@
+"""The ranges of the picture's format, and the one check of a whole number."""
+
+from __future__ import annotations
+
+from .errors import InputError
+
+MAXIMUM_SIZE = 4096
+
+#: Of a colour channel.
+CHANNEL_BITS = 8
+
+#: Field, least and greatest value, wherever a picture's format is given.
+FORMAT_RANGES = (
+    ("width", 1, MAXIMUM_SIZE),
+    ("height", 1, MAXIMUM_SIZE),
+    ("sub_bits", 1, 8),
+    ("depth_bits", 2, 32),
+)
+
+
+def check_whole(field: str, value: object, low: int, high: int) -> None:
+    """Raise ``InputError``, which begins with ``field``, unless ``value`` is a whole number from
+    ``low`` to ``high``; True and False are none."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(f"{field}: {value!r} is not a whole number from {low} to {high}")

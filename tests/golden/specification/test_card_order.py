@@ -1,0 +1,122 @@
+"""Card orders as people write them."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cardcage.golden.specification.card_order import (
+    MAXIMUM_CARDS,
+    check_cards,
+    domains,
+    parse_cards,
+)
+from cardcage.golden.specification.errors import InputError
+
+
+@pytest.mark.parametrize(("text", "cards"), [
+    ("PM", "PM"),
+    ("pmm", "PMM"),
+    (" P MM\tP MM\n", "PMMPMM"),
+    ("4x(PMM)", "PMMPMMPMMPMM"),
+    ("2X(PM)", "PMPM"),
+    ("2*(PM)", "PMPM"),
+    ("2×(PM)", "PMPM"),
+    ("P 3xM", "PMMM"),
+    ("2x(P 2xM) PM", "PMMPMMPM"),
+    ("2x(P2x(MM))", "PMMMMPMMMM"),
+    ("(PM)(PM)", "PMPM"),
+    ("(PM)", "PM"),
+    ("1x(PM)", "PM"),
+    ("10xP", "P" * 10),
+    ("", ""),
+])
+def test_spelled_out(text, cards):
+    assert parse_cards(text) == cards
+
+
+@pytest.mark.parametrize(("text", "message"), [
+    ("PXM", "no card|match|count"),
+    ("PAM", "'A' at position 2"),
+    ("P-M", "'-' at position 2"),
+    ("0x(PM)", "0x"),
+    ("5000x(PM)", "5000x"),
+    ("4097xM", "4097x"),
+    ("2x(2000x(PM))", "cards"),
+    ("2x2xM", "two counts"),
+    ("2x", "match"),
+    ("2(PM)", "match"),
+    ("(PM", "match"),
+    ("PM)", "match"),
+    (")PM(", "match"),
+    ("x(PM)", "match"),
+    ("2P", "match"),
+])
+def test_what_cannot_be_read(text, message):
+    with pytest.raises(InputError, match=message) as raised:
+        parse_cards(text)
+    assert str(raised.value).startswith("cards: ")
+    assert "\n" not in str(raised.value)
+
+
+def test_as_many_cards_as_allowed():
+    assert len(parse_cards(f"{MAXIMUM_CARDS // 2}x(PM)")) == MAXIMUM_CARDS
+    with pytest.raises(InputError, match=str(MAXIMUM_CARDS)):
+        parse_cards(f"{MAXIMUM_CARDS // 2}x(PM) M")
+
+
+ORDER = st.recursive(
+    st.sampled_from(["P", "M"]).map(lambda card: (card, card)),
+    lambda inner: st.one_of(
+        st.lists(inner, min_size=1, max_size=3).map(
+            lambda parts: (" ".join(text for text, _ in parts),
+                           "".join(cards for _, cards in parts))),
+        st.tuples(st.integers(1, 4), inner).map(
+            lambda pair: (f"{pair[0]}x({pair[1][0]})", pair[1][1] * pair[0]))),
+    max_leaves=6)
+
+
+@given(ORDER)
+def test_groups_in_groups(order):
+    text, cards = order
+    assert parse_cards(text) == cards
+    assert parse_cards(cards) == cards
+
+
+@pytest.mark.parametrize("cards", ["PM", "PMMP", "PPM", "PMPMMM", "P" + "M" * 16])
+def test_machines(cards):
+    check_cards(cards)
+
+
+@pytest.mark.parametrize(("cards", "message"), [
+    ("", "no processing element"),
+    ("MM", "no processing element"),
+    ("P", "no memory unit"),
+    ("PP", "no memory unit"),
+    ("MMPMM", "2 memory unit"),
+    ("PMMM", "3 memory units are not supported.* 2 or 4"),
+    ("PMMMMPMM", "6 memory units .* 4 or 8"),
+])
+def test_what_is_no_machine(cards, message):
+    with pytest.raises(InputError, match=message):
+        check_cards(cards)
+
+
+@pytest.mark.parametrize(("cards", "expected"), [
+    ("PM", [(0, 1)]),
+    ("PMMPM", [(0, 2), (2, 1)]),
+    ("MMPM", [(2, 1)]),
+    ("PPMP", [(0, 0), (0, 1), (1, 0)]),
+])
+def test_domains(cards, expected):
+    assert domains(cards) == expected
+
+
+@given(st.text("PM", min_size=1, max_size=20))
+def test_domains_follow_the_lines(cards):
+    """Walk the backplane: each memory unit belongs to the last element passed."""
+    shares = [[cards[:slot].count("M"), 0] for slot, card in enumerate(cards) if card == "P"]
+    for slot, card in enumerate(cards):
+        elements = cards[:slot].count("P")
+        if card == "M" and elements:
+            shares[elements - 1][1] += 1
+    assert domains(cards) == [tuple(share) for share in shares]
