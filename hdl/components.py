@@ -5,41 +5,42 @@ from collections.abc import Callable
 from amaranth.lib import wiring
 
 from ..golden.specification.configuration import MachineConfiguration
-from .broadcast_queue import BroadcastQueue
-from .central_broadcast_controller import CentralBroadcastController
-from .depth_lane import DepthLane
-from .depth_test import DepthTest
-from .divider import Divider
-from .edge_columns import EdgeColumns
-from .edge_setup import EdgeSetup
-from .fragment_stepper import FragmentStepper
-from .frame_tags import FrameTags
-from .id_increment import IdIncrement
-from .interlace import LatticeBlock, PixelAddress, ScanAddress
-from .interpolator import Interpolator
-from .line_selector import LineSelector
-from .memory_unit import MemoryUnit
-from .one_port_memory import OnePortMemory
-from .pipelined_multiplier import PipelinedMultiplier
-from .pixel_box import PixelBox
-from .plane_setup import PlaneSetup, plane_division
-from .processing_element import ProcessingElement
-from .processing_element_control import ProcessingElementControl
-from .read_back import ReadBack
-from .response_link import ResponseLink
-from .result_queue import ResultQueue
-from .row_walker import RowWalker
-from .sampling_grid import SamplingGrid
-from .span_clip import SpanClip
-from .span_walker import SpanWalker
-from .survey import Survey
-from .tag_sweep import TagSweep
-from .triangle_outline import TriangleOutline
-from .triangle_setup import TriangleSetup
-from .two_port_depth_test import TwoPortDepthTest
-from .two_port_memory import TwoPortMemory
-from .vertex_sort import VertexSort
-from .video_scan_generator import VideoScanGenerator
+from .arithmetic.divider import Divider
+from .arithmetic.pipelined_multiplier import PipelinedMultiplier
+from .backplane.id_increment import IdIncrement
+from .backplane.response_link import ResponseLink
+from .controller.central_broadcast_controller import CentralBroadcastController
+from .controller.frame_tags import FrameTags
+from .depth_test.one_port import OnePortDepthTest
+from .depth_test.one_port_lane import OnePortLane
+from .depth_test.two_ports import TwoPortDepthTest
+from .mapping.interlace import PixelAddress, ScanAddress
+from .mapping.lattice import LatticeBlock
+from .memory_unit.memory_unit import MemoryUnit
+from .memory_unit.one_port_memory import OnePortMemory
+from .memory_unit.tag_sweep import TagSweep
+from .memory_unit.two_port_memory import TwoPortMemory
+from .processing_element.broadcast_queue import BroadcastQueue
+from .processing_element.control import ProcessingElementControl
+from .processing_element.depth_read_back import DepthReadBack
+from .processing_element.memory_bus_selector import MemoryBusSelector
+from .processing_element.processing_element import ProcessingElement
+from .processing_element.survey import Survey
+from .rasteriser.edge_columns import EdgeColumns
+from .rasteriser.fragment_stepper import FragmentStepper
+from .rasteriser.interpolator import Interpolator
+from .rasteriser.span_clip import SpanClip
+from .rasteriser.triangle_rows import TriangleRows
+from .rasteriser.triangle_spans import TriangleSpans
+from .triangle_setup.edge_setup import EdgeSetup
+from .triangle_setup.outline import TriangleOutline
+from .triangle_setup.pixel_box import PixelBox
+from .triangle_setup.plane_setup import PlaneSetup, plane_division
+from .triangle_setup.result_queue import ResultQueue
+from .triangle_setup.sampling_grid import SamplingGrid
+from .triangle_setup.triangle_setup import TriangleSetup
+from .triangle_setup.vertex_sort import VertexSort
+from .video.video_scan_generator import VideoScanGenerator
 
 __all__ = ["COMPONENTS"]
 
@@ -56,8 +57,8 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "memory_unit": lambda c: MemoryUnit(configuration=c),
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
-    "depth_lane": lambda c: DepthLane(configuration=c),
-    "depth_test": lambda c: DepthTest(configuration=c),
+    "one_port_lane": lambda c: OnePortLane(configuration=c),
+    "one_port_depth_test": lambda c: OnePortDepthTest(configuration=c),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
@@ -66,7 +67,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
-    "line_selector": lambda c: LineSelector(configuration=c),
+    "memory_bus_selector": lambda c: MemoryBusSelector(configuration=c),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
     # That of a triangle's area.
@@ -76,14 +77,14 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "pixel_box": lambda c: PixelBox(configuration=c),
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
     "processing_element_control": lambda c: ProcessingElementControl(configuration=c),
-    "read_back": lambda c: ReadBack(configuration=c),
+    "depth_read_back": lambda c: DepthReadBack(configuration=c),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
-    "row_walker": lambda c: RowWalker(configuration=c),
+    "triangle_rows": lambda c: TriangleRows(configuration=c),
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
-    "span_walker": lambda c: SpanWalker(configuration=c),
+    "triangle_spans": lambda c: TriangleSpans(configuration=c),
     "survey": lambda c: Survey(configuration=c),
     "tag_sweep": lambda c: TagSweep(configuration=c),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),

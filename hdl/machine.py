@@ -10,12 +10,12 @@ from amaranth.lib.wiring import In, Out
 from ..golden.specification import commands
 from ..golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
 from ..golden.specification.configuration import MachineConfiguration
-from .activity import MachineActivity, activity_layout
-from .central_broadcast_controller import CentralBroadcastController
-from .layouts import response_layout
-from .memory_unit import MemoryUnit
-from .processing_element import ProcessingElement
-from .video_scan_generator import VideoPins, VideoScanGenerator
+from .backplane.words import response_layout
+from .controller.central_broadcast_controller import CentralBroadcastController
+from .memory_unit.memory_unit import MemoryUnit
+from .observer import MachineActivity, activity_layout
+from .processing_element.processing_element import ProcessingElement
+from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
 __all__ = ["Machine"]

@@ -13,8 +13,8 @@ from amaranth.hdl import Fragment
 from ..golden.cycles.cycle_model import CyclePrediction, SetupTiming, predict_cycles
 from ..golden.cycles.one_port_lanes import clocks_per_row, scan_shares
 from ..golden.specification.configuration import MachineConfiguration
-from ..hdl.triangle_outline import TriangleOutline
-from ..hdl.triangle_setup import TriangleSetup
+from ..hdl.triangle_setup.outline import TriangleOutline
+from ..hdl.triangle_setup.triangle_setup import TriangleSetup
 from .bench_cases import CaseLists, Order, case_lists
 from .bench_machines import BenchMachine
 from .bench_run import Measurement, measure

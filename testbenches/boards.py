@@ -10,7 +10,7 @@ from amaranth.lib import wiring
 
 from ..golden.planning.machines import on_screen_machine
 from ..golden.specification.configuration import MachineConfiguration
-from ..hdl.memory_unit import MemoryUnit
+from ..hdl.memory_unit.memory_unit import MemoryUnit
 from .bench_cases import DEPTH_BITS, SUB_BITS
 from .domain import Domain
 from .machine_options import SETUPS

@@ -12,7 +12,7 @@ from .bench_command import bench_command
 from .command_group import EXIT_DIFFERENT, CommandGroup, warn
 from .command_options import machine_options
 from .engines import AUTO, ENGINES
-from .export import COMPONENT_NAMES, export, export_summary
+from .export.export_files import COMPONENT_NAMES, export, export_summary
 from .hard_cases_table import hard_cases_json, hard_cases_table, hard_cases_text
 from .machine_options import MachineOptions
 from .model_cache import cache_folder, cache_size, clear_cache

@@ -11,9 +11,9 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.specification.card_order import domains
 from ..golden.specification.configuration import MachineConfiguration
-from ..hdl.backplane import BroadcastLines, Connector, PictureLines, ScanLines
-from ..hdl.memory_unit import MemoryUnit
-from ..hdl.processing_element import ProcessingElement
+from ..hdl.backplane.connectors import BroadcastLines, Connector, PictureLines, ScanLines
+from ..hdl.memory_unit.memory_unit import MemoryUnit
+from ..hdl.processing_element.processing_element import ProcessingElement
 
 __all__ = ["Domain"]
 

@@ -22,9 +22,9 @@ from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.display_list import DisplayList
 from ..golden.specification.fixed_point import exact_fraction_bits
 from ..golden.specification.sampling_grid import Grid
-from ..hdl.fragment_stepper import FragmentStepper
-from ..hdl.interpolator import Interpolator
-from ..hdl.layouts import planes_layout, span_layout
+from ..hdl.backplane.words import planes_layout, span_layout
+from ..hdl.rasteriser.fragment_stepper import FragmentStepper
+from ..hdl.rasteriser.interpolator import Interpolator
 from .remainder_interpolator import PipelinedRemainderInterpolator, RemainderInterpolator
 
 _SPAN_FIELDS = ("x", "end", "left", "y_steps", "stride")

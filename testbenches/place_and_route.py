@@ -88,7 +88,7 @@ class Part:
     def texts(self) -> dict[str, str]:
         """Its Verilog, the registers around it, and the script for both, by name of file."""
         from ..hdl.components import COMPONENTS  # loads Amaranth: only those who measure wait
-        from ..hdl.verilog import component_ports, component_verilog
+        from .export.verilog import component_ports, component_verilog
 
         component = (self.build or COMPONENTS[self.name])(self.configuration)
         return {"component.v": component_verilog(component, self.name),

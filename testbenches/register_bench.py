@@ -49,7 +49,7 @@ endmodule
 
 def bench_verilog(name: str, ports: Sequence[Any]) -> str:
     """A module ``BENCH`` around the module ``name``, whose ports besides ``clk`` and ``rst`` are
-    ``ports`` (``hdl.verilog.Port``)."""
+    ``ports`` (``testbenches.export.verilog.Port``)."""
     places = {"input": 0, "output": 0}
     connections = []
     for port in ports:

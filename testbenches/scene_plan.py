@@ -20,7 +20,7 @@ from .machine_options import (
 )
 
 if TYPE_CHECKING:
-    from ..hdl.cell_count import Cells
+    from .export.cell_count import Cells
 
 #: How far the estimate of cycles is off in the frames that the tests simulate.
 CYCLE_ACCURACY = 0.15
@@ -76,8 +76,8 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
 
 def _cells(planned: Plan) -> tuple[Cells, Cells]:
     # They load Amaranth: only those who count wait for it.
-    from ..hdl.cell_count import count_cells
-    from ..hdl.processing_element import ProcessingElement
+    from ..hdl.processing_element.processing_element import ProcessingElement
+    from .export.cell_count import count_cells
 
     machine, full = (count_cells(ProcessingElement(configuration=configuration))
                      for configuration in (planned.configuration, planned.full))

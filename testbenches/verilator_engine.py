@@ -18,9 +18,9 @@ import numpy as np
 from ..golden.specification.activity import ACTIVITY_BITS
 from ..golden.specification.commands import ResponseKind, command_words
 from ..golden.specification.configuration import MachineConfiguration
-from ..hdl.verilog import CARD_MODULES, machine_verilog
 from .activity import BUCKETS, KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
+from .export.verilog import CARD_MODULES, machine_verilog
 from .model_cache import cached, content_hash
 from .verilator_tool import VerilatorTool, find_verilator
 

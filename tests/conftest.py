@@ -1,4 +1,14 @@
-"""What tests measure is shown at the end of a run, whoever ran them: ``record_property``."""
+"""What all tests share: ``library/`` is importable, and what tests measure is shown at the end."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+LIBRARY = Path(__file__).parent / "library"
+if str(LIBRARY) not in sys.path:
+    sys.path.insert(0, str(LIBRARY))
+pytest.register_assert_rewrite(*(path.stem for path in LIBRARY.iterdir() if path.stem[0] != "_"))
 
 MEASURED = "measured"
 

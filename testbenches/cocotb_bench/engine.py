@@ -16,8 +16,8 @@ from typing import Any
 
 from ...golden.specification.commands import ResponseKind
 from ...golden.specification.errors import InputError
-from ...hdl.verilog import machine_verilog
 from ..engine import EngineRun, Job, Progress
+from ..export.verilog import machine_verilog
 from ..verilator_tool import ToolMissingError
 from .exchange import FOLDER_VARIABLE, read_outcome, read_progress, write_job
 from .simulators import Simulator, find_simulator

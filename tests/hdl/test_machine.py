@@ -13,8 +13,8 @@ from cardcage.golden.specification.card_order import domains
 from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.machine import Machine
-from cardcage.hdl.memory_unit import MemoryUnit
-from cardcage.hdl.processing_element import ProcessingElement
+from cardcage.hdl.memory_unit.memory_unit import MemoryUnit
+from cardcage.hdl.processing_element.processing_element import ProcessingElement
 
 #: Card orders with what is odd about them.
 ORDERS = {

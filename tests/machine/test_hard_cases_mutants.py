@@ -146,7 +146,7 @@ def test_wrapped_instead_of_saturated(monkeypatch, record_property):
     high = display_list.depth_limit
     assert min(carried.values()) < 0 and max(carried.values()) > high + 1
     wrapped = {pixel: depth % (high + 2) for pixel, depth in carried.items()}
-    monkeypatch.setattr("cardcage.hdl.interpolator.saturate",
+    monkeypatch.setattr("cardcage.hdl.rasteriser.interpolator.saturate",
                         lambda value, low, high: value[:len(Const(high))])
     video = assert_caught(name, display_list, machine_for(display_list, 0),
                           image(display_list, wrapped), record_property, "no saturation")

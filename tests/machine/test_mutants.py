@@ -16,109 +16,111 @@ FAILURES = (AssertionError, TimeoutError, RuntimeError, ValueError, IndexError)
 #: name → (module, its class, where it is used, right, wrong)
 MUTANTS = {
     "comparator takes the farther": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "compare.depth < nearest", "compare.depth > nearest"),
     "comparator lets ties replace": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "compare.depth < nearest", "compare.depth <= nearest"),
     "comparison without forwarding": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
     "a winner written last is forgotten too soon": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "has_written.eq(1)", "has_written.eq(0)"),
     "a winner written last is remembered too long": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "m.d.sync += has_written.eq(0)", "pass"),
     "depth of the span's first pixel all along": (
-        "fragment_stepper", "FragmentStepper", ["processing_element"],
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
         "pixel.x_steps.eq(span.x - span.left)", "pixel.x_steps.eq(span.end - 1 - span.left)"),
     "edges without their fraction": (
-        "edge_columns", "EdgeColumns", ["span_walker"],
+        "rasteriser.edge_columns", "EdgeColumns", ["rasteriser.triangle_spans"],
         "first.eq(start + words[0])", "first.eq(start + (words[0]"
         " >> self.configuration.edge_fraction_bits << self.configuration.edge_fraction_bits))"),
     "the short edge counts rows from the top": (
-        "row_walker", "RowWalker", ["span_walker"],
+        "rasteriser.triangle_rows", "TriangleRows", ["rasteriser.triangle_spans"],
         "Mux(in_upper, triangle.top, triangle.middle)", "triangle.top"),
     "a row skipped at the end": (
-        "row_walker", "RowWalker", ["span_walker"],
+        "rasteriser.triangle_rows", "TriangleRows", ["rasteriser.triangle_spans"],
         "after_base >= triangle.bottom", "after_base + 1 >= triangle.bottom"),
     "one row where there are two": (
-        "broadcast_queue", "BroadcastQueue", ["processing_element"],
+        "processing_element.broadcast_queue", "BroadcastQueue",
+        ["processing_element.processing_element"],
         "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
     "a span ends a pixel late": (
-        "span_clip", "SpanClip", ["span_walker"],
+        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
         "end.eq(extent.beyond)", "end.eq(extent.beyond + 1)"),
     "row step added twice": (
-        "interpolator", "Interpolator", ["processing_element"],
+        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
         "delayed(m, x + y, 1,", "delayed(m, x + y + y, 1,"),
     "odd limbs left out": (
-        "interpolator", "Interpolator", ["processing_element"],
+        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
         "sum(words[1:], words[0])", "words[0]"),
     "a triangle kept from the element that has its last column": (
-        "broadcast_queue", "BroadcastQueue", ["processing_element"],
+        "processing_element.broadcast_queue", "BroadcastQueue",
+        ["processing_element.processing_element"],
         "< triangle.right", "< triangle.right - 1"),
     "ID chain does not count": (
-        "id_increment", "IdIncrement", ["memory_unit"],
+        "backplane.id_increment", "IdIncrement", ["memory_unit.memory_unit"],
         "self.left + 1", "self.left"),
     "ID chain counts by two": (
-        "id_increment", "IdIncrement", ["memory_unit"],
+        "backplane.id_increment", "IdIncrement", ["memory_unit.memory_unit"],
         "self.left + 1", "self.left + 2"),
     "scan slot ignored: the element has the port": (
-        "one_port_memory", "OnePortMemory", ["memory_unit"],
+        "memory_unit.one_port_memory", "OnePortMemory", ["memory_unit.memory_unit"],
         "with m.If(access.scan):", "with m.If(access.scan & ~access.write & ~access.read):"),
     "busy not shown to a read in a scan slot": (
-        "memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "read_here & access.read_busy)", "read_here & access.write)"),
     "output register captured a clock early": (
-        "memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "with m.If(captured):", "with m.If(scan_read):"),
     "front and back colours exchanged": (
-        "memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "Mux(pictures.front, access.color[1].value, access.color[0].value)",
         "Mux(pictures.front, access.color[0].value, access.color[1].value)"),
     "survey takes silence for an answer": (
-        "survey", "Survey", ["processing_element"],
+        "processing_element.survey", "Survey", ["processing_element.processing_element"],
         "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
-        "tag_sweep", "TagSweep", ["memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
         "Mux(overwritten, 0, left)", "Mux(overwritten | everything, 0, left)"),
     "old tags are not swept out": (
-        "tag_sweep", "TagSweep", ["memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
         "Mux(overwritten, 0, left)", "Mux(everything, left, 0)"),
     "passes stop half way": (
-        "tag_sweep", "TagSweep", ["memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
         "following[-1] if wraps", "following[-2] if wraps"),
     "depths of all frames are compared": (
-        "memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "Mux(current, access.depth.value", "Mux(access.depth.tag.any(), access.depth.value"),
     "colours of all frames are shown": (
-        "memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "drawn.eq(Mux(pictures.front, current[1], current[0]))",
         "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
     "a tag is given out before a pass ends": (
-        "frame_tags", "FrameTags", ["central_broadcast_controller"],
+        "controller.frame_tags", "FrameTags", ["controller.central_broadcast_controller"],
         "m.If(self.swept)", "m.If(1)"),
     "a frame starts before all are done": (
-        "central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "when=quiet & self.tags.ready", "when=self.tags.ready"),
     "with two ports the winner a clock ahead is not seen": (
-        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(follows & winning, write.depth, stored)", "stored"),
     "with two ports the winner two clocks ahead is not seen": (
-        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(writing, write.depth, ", "Mux(0, write.depth, "),
     "with two ports a read beside a write sees the old word": (
-        "two_port_depth_test", "TwoPortDepthTest", ["processing_element"],
+        "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(wrote, written.depth, ", "Mux(0, written.depth, "),
     "pictures are never swapped": (
-        "central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "front.eq(~pictures.front)", "front.eq(pictures.front)"),
     "a frame ends before all are done": (
-        "central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "self.broadcast.done & (settle == 0)", "settle == 0"),
     "columns step one pixel instead of the lattice's stride": (
-        "fragment_stepper", "FragmentStepper", ["processing_element"],
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
         "span.x + span.stride", "span.x + 1"),
 }
 
@@ -126,25 +128,25 @@ MUTANTS = {
 #: The same, of what only squares of pixels use.
 MUTANTS_IN_SQUARES = {
     "a square ends a pixel late": (
-        "span_clip", "SpanClip", ["span_walker"],
+        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
         "with m.If(square_end < extent.beyond):", "with m.If(square_end + 1 < extent.beyond):"),
     "a row has spans in its first square only": (
-        "span_clip", "SpanClip", ["span_walker"],
+        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
         "ended.eq(empty | (following >= extent.beyond) if square_bits else 1)", "ended.eq(1)"),
     "every square begins where the last one does": (
-        "span_clip", "SpanClip", ["span_walker"],
+        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
         "x.eq(Mux(underway, current, x_first))", "x.eq(x_first)"),
     "rows of other squares are not skipped": (
-        "lattice", "next_owned", ["row_walker"],
+        "mapping.lattice", "next_owned", ["rasteriser.triangle_rows"],
         "Mux(after[:square_bits] == 0, mask << square_bits, 0)", "0"),
     "the first square begins at its second column": (
-        "lattice", "first_owned", ["span_clip"],
+        "mapping.lattice", "first_owned", ["rasteriser.span_clip"],
         "(square + ahead) << square_bits)", "((square + ahead) << square_bits) + 1)"),
     "the scan reads half its groups": (
-        "interlace", "ScanAddress", ["memory_unit"],
+        "mapping.interlace", "ScanAddress", ["memory_unit.memory_unit"],
         "self.x[:group_bits] == 0", "self.x[:group_bits + 1] == 0"),
     "addresses leave out a bit inside the square": (
-        "interlace", "PixelAddress", ["interpolator"],
+        "mapping.interlace", "PixelAddress", ["rasteriser.interpolator"],
         '_without(self.x, interlace.unit_mask("x"))', "self.x >> 1"),
 }
 
@@ -193,13 +195,13 @@ def check_squares():
 #: The same in a skewed machine of one unit each.
 MUTANTS_SKEWED = {
     "a unit number without the bit of x": (
-        "interlace", "PixelAddress", ["interpolator"],
+        "mapping.interlace", "PixelAddress", ["rasteriser.interpolator"],
         "number[0] ^= x[interlace.skew_bit]", "pass"),
     "rows that are not shifted": (
-        "lattice", "row_offset", ["span_clip"],
+        "mapping.lattice", "row_offset", ["rasteriser.span_clip"],
         "further = lattice.shifted &", "further = 0 &"),
     "a filter that looks for the columns of every other row": (
-        "lattice", "rows_mask", ["broadcast_queue"],
+        "mapping.lattice", "rows_mask", ["processing_element.broadcast_queue"],
         "lattice.x_mask >> 1, lattice.x_mask)", "lattice.x_mask, lattice.x_mask)"),
 }
 
@@ -211,19 +213,19 @@ def check_skewed():
 #: And of the two lanes that share the lines to one-port units.
 MUTANTS_OF_LANES = {
     "fragments of a pixel in either lane": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_test.one_port", "OnePortDepthTest", ["processing_element.processing_element"],
         "fragment.unit[0] == number", "fragment.depth[0] == number"),
     "both lanes write at once": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_test.one_port", "OnePortDepthTest", ["processing_element.processing_element"],
         " | (writer != number)", ""),
     "both lanes read at once": (
-        "depth_test", "DepthTest", ["processing_element"],
+        "depth_test.one_port", "OnePortDepthTest", ["processing_element.processing_element"],
         " | (reader != number)", ""),
     "comparison without forwarding": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
     "a winner written last is not looked at": (
-        "depth_lane", "DepthLane", ["depth_test"],
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "has_written.eq(1)", "has_written.eq(0)"),
 }
 

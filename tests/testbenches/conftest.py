@@ -1,13 +1,8 @@
-"""One small frame, simulated once, and engines that replay it or tamper with it.
-
-Makes ``library/`` importable: the test modules share what a refusal is in ``refusals``.
-"""
+"""One small frame, simulated once, and engines that replay it or tamper with it."""
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -15,11 +10,6 @@ from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engine import EngineRun, Job, Progress, Scan
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.render import RenderOptions, prepare_render
-
-LIBRARY = str(Path(__file__).parent / "library")
-if LIBRARY not in sys.path:
-    sys.path.insert(0, LIBRARY)
-pytest.register_assert_rewrite("refusals")
 
 #: Every machine of these tests draws this.
 SCENE = "random:n=12,size=8,seed=5"

@@ -9,9 +9,9 @@ from click.testing import CliRunner
 from refusals import refusal
 
 from cardcage.golden.specification.fixed_point import exact_fraction_bits
-from cardcage.hdl.verilog import component_verilog
 from cardcage.testbenches import board_benchmark, place_and_route
 from cardcage.testbenches.boards import BOARDS
+from cardcage.testbenches.export.verilog import component_verilog
 from cardcage.testbenches.outside_ram import OutsideRam
 from cardcage.testbenches.place_and_route import Part, Placement, missing_tools
 
@@ -74,7 +74,7 @@ def test_other_rams_stay_and_the_members_are_the_boards_own():
     part = BOARDS["unit-2-ports"].part("PM", 16, 16)
     unit = place_and_route.Part(part.configuration, "memory_unit")
     inside = unit.texts()["component.v"]
-    from cardcage.hdl.memory_unit import MemoryUnit
+    from cardcage.hdl.memory_unit.memory_unit import MemoryUnit
 
     board = MemoryUnit(configuration=part.configuration)
     kept = OutsideRam(component=board, storages=board.memory.storages[1:])

@@ -16,8 +16,6 @@ from click.testing import CliRunner
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
-from cardcage.hdl.description import describe
-from cardcage.hdl.verilog import machine_verilog
 from cardcage.testbenches.cocotb_bench import simulators
 from cardcage.testbenches.cocotb_bench.__main__ import main
 from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
@@ -25,6 +23,8 @@ from cardcage.testbenches.cocotb_bench.exchange import configuration_of, read_co
 from cardcage.testbenches.cocotb_bench.simulators import SIMULATORS, find_simulator
 from cardcage.testbenches.cocotb_bench.violation import ProtocolError
 from cardcage.testbenches.compare import compare
+from cardcage.testbenches.export.machine_json import describe
+from cardcage.testbenches.export.verilog import machine_verilog
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_commands, frame_job, simulate
 from cardcage.testbenches.verilator_tool import ToolMissingError

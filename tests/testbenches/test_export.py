@@ -137,7 +137,8 @@ def test_refused(arguments, words):
 def test_a_failure_leaves_the_last_export(monkeypatch):
     assert run(*TINY).exit_code == 0
     before = listing()
-    monkeypatch.setattr("cardcage.testbenches.export.json.dumps", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("cardcage.testbenches.export.export_files.json.dumps",
+                        lambda *_, **__: 1 / 0)
     assert isinstance(run(*TINY, "--shading", "flat").exception, ZeroDivisionError)
     assert listing() == before
 

@@ -86,7 +86,7 @@ def test_reports():
 
 def test_bench_registers_every_port():
     from cardcage.hdl.components import COMPONENTS
-    from cardcage.hdl.verilog import component_ports
+    from cardcage.testbenches.export.verilog import component_ports
 
     component = COMPONENTS["processing_element"](SMALL)
     ports = component_ports(component)

@@ -14,10 +14,10 @@ from click.testing import CliRunner
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.hdl import verilog
 from cardcage.testbenches import engines, model_cache
 from cardcage.testbenches.cli import main
 from cardcage.testbenches.compare import compare
+from cardcage.testbenches.export import verilog
 from cardcage.testbenches.pysim_engine import PysimEngine
 from cardcage.testbenches.simulation import frame_job, simulate
 from cardcage.testbenches.verilator_engine import VerilatorEngine

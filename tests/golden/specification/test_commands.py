@@ -13,7 +13,7 @@ from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
-from cardcage.hdl import layouts
+from cardcage.hdl.backplane import words as layouts
 
 CONFIGURATIONS = {
     "tiny": preset("tiny"),

@@ -1,0 +1,1 @@
+"""What several boards compute with: division, multiplication, narrowings, delays."""

@@ -1,0 +1,1 @@
+"""What runs between the boards: connectors, words, the ID chain, the response chain."""

@@ -1,0 +1,204 @@
+"""The lines of the backplane: what every slot has, whatever card is in it.
+
+::
+
+      CBC ──broadcast──────┬───────────┬──────────┬──────────┬────────
+                           │           │          │          │
+           ┌─────┐  id   ┌─┴──┐  id  ┌─┴──┐ id+1┌─┴──┐ id+2┌─┴──┐
+           │ CBC ├──────▶│ PE ├─────▶│ MU ├────▶│ MU ├────▶│ PE │ …  ──┐
+           │     │◀──────┤    │◀════▶│    │◀═══▶│    │  ┆  │    │      │ total units
+           └─────┘ resp. └────┘ lines└─┬──┘     └─┬──┘  ┆  └────┘      │
+              ▲ total                  │          │     ┆ a PE ignores the lines from its left
+              └────────────────────────┼──────────┼───────────────────┘
+                                       │          │
+      CBC ──pictures───────────────────┼──────────┼───────────────────
+          ◀─swept──────────────────────┼──────────┼─────────────────── (wired and)
+      video scan generator ──scan──────┴──────────┴───────────────────
+                           ◀─video──────────────────────────────────── (wired or)
+"""
+
+from amaranth.hdl import *
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.ranges import CHANNEL_BITS
+from .words import broadcast_layout, response_layout
+
+__all__ = [
+    "BroadcastLines",
+    "Connector",
+    "MemoryBus",
+    "PictureLines",
+    "ScanLines",
+    "read_request_layout",
+    "scan_address_layout",
+    "write_request_layout",
+]
+
+
+def read_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Read the depth at an address of a unit."""
+    return data.StructLayout({
+        "valid": 1,
+        "unit": configuration.id_bits,
+        "address": configuration.address_bits,
+    })
+
+
+def write_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Write the depth and the back colour at an address of a unit."""
+    return data.StructLayout({
+        "valid": 1,
+        "unit": configuration.id_bits,
+        "address": configuration.address_bits,
+        "depth": configuration.depth_bits,
+        "color": 3 * CHANNEL_BITS,
+    })
+
+
+class MemoryBus(wiring.Signature):
+    """The bus of one processing element to the memory units of its domain (figure 12).
+
+    A read and a write can go to two different units in the same clock, or to one
+    with two ports.  Each takes place in a clock in which its ``valid`` is high
+    and its busy line is low; a request that no unit answers is never busy.  A read
+    sees every write that took place before it; what it sees of one in the same clock,
+    which only units with two ports take, is unknown.  Those are never busy.
+
+    Members
+    -------
+    read: Out(read_request_layout)
+    read_busy: In(1)
+        The unit's one port is taken by the scan or by a write.
+    read_data: In(depth_bits)
+        Depth, in the clock after the read; 0 when no unit answered.
+    write: Out(write_request_layout)
+    write_busy: In(1)
+        The unit's one port is taken by the scan.
+    scanned: In(2)
+        Known before any request: the one port of a unit with an even number is taken by the
+        scan, and of one with an odd number.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "read": Out(read_request_layout(configuration)),
+            "read_busy": In(1),
+            "read_data": In(configuration.depth_bits),
+            "write": Out(write_request_layout(configuration)),
+            "write_busy": In(1),
+            "scanned": In(2),
+        })
+
+
+class Connector(wiring.Signature):
+    """The lines that run from one slot to the next; ``Out`` is towards the right.
+
+    Members
+    -------
+    id: Out(id_bits)
+        Memory units to the left (figures 10 and 11).
+    lines: Out(MemoryBus)
+        Driven by the nearest processing element to the left.
+    response: In(stream of response words)
+        What the processing elements further right have to say to the controller.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "id": Out(configuration.id_bits),
+            "lines": Out(MemoryBus(configuration)),
+            "response": In(stream.Signature(response_layout())),
+        })
+
+
+class BroadcastLines(wiring.Signature):
+    """The controller's lines to every processing element, and their wired answers.
+
+    Members
+    -------
+    strobe: Out(1)
+        ``packet`` is for every processing element to take in this clock; only while ``ready``.
+    packet: Out(broadcast_layout)
+        Operation and body.
+    ready: In(1)
+        The processing element can take a packet (wired and over all).
+    done: In(1)
+        It has finished everything it was told and sent all its responses (wired and over all).
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "strobe": Out(1),
+            "packet": Out(broadcast_layout(configuration)),
+            "ready": In(1),
+            "done": In(1),
+        })
+
+
+class PictureLines(wiring.Signature):
+    """The controller's lines to every memory unit: the picture shown and the one drawn.
+
+    Each lane of a memory unit has one current tag.  What is written gets it; a
+    word with another tag reads as background.
+
+    Members
+    -------
+    front: Out(1)
+        Which of the two colours is shown; the other is the back picture.
+    depth_tag: Out(tag_bits)
+    color_tag: Out(tag_bits) [2]
+        The current tags; never 0.
+    initialise: Out(1)
+        Begin a pass that gives tag 0 to every lane of every word; only while ``swept``.
+    sweep: Out(1)
+        Begin a pass that gives tag 0 to lanes whose tag is not the current one; only while
+        ``swept``.
+    swept: In(1)
+        The memory unit is in no pass (wired and over all).
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "front": Out(1),
+            "depth_tag": Out(configuration.tag_bits),
+            "color_tag": Out(configuration.tag_bits).array(2),
+            "initialise": Out(1),
+            "sweep": Out(1),
+            "swept": In(1),
+        })
+
+
+def scan_address_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A pixel at the highest resolution; ``valid`` is high in the first clock of its time."""
+    return data.StructLayout({
+        "valid": 1,
+        "x": configuration.x_bits,
+        "y": configuration.y_bits,
+    })
+
+
+class ScanLines(wiring.Signature):
+    """The video scan generator's lines to every memory unit (figures 6 to 9).
+
+    Members
+    -------
+    fetch: Out(scan_address_layout)
+        Announces a scan slot: a unit whose pixel is due reads it in the next clock.
+    show: Out(scan_address_layout)
+        The pixel on the video bus in the next clock: ``fetch`` of three clocks ago.
+    video: In(24)
+        Red in the low byte, then green, blue: from the unit that holds the shown pixel, if that
+        has been drawn; others drive 0 (wired or).
+    drawn: In(1)
+        It has been drawn since its frame started (wired or); the background else.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "fetch": Out(scan_address_layout(configuration)),
+            "show": Out(scan_address_layout(configuration)),
+            "video": In(3 * CHANNEL_BITS),
+            "drawn": In(1),
+        })

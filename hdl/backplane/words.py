@@ -1,0 +1,110 @@
+"""Structures of the command and broadcast words, built from the shared tables."""
+
+from amaranth.hdl import *
+from amaranth.lib import data, enum
+
+from ...golden.specification import commands
+from ...golden.specification.configuration import MachineConfiguration
+
+__all__ = [
+    "Operation",
+    "broadcast_layout",
+    "outline_layout",
+    "planes_layout",
+    "prepared_triangle_layout",
+    "response_layout",
+    "row_shape",
+    "span_layout",
+    "struct_layout",
+    "walked_outline_layout",
+]
+
+
+class Operation(enum.Enum, shape=3):
+    """What the central broadcast controller can tell every processing element at once."""
+
+    SURVEY = 1  # find the memory units of your domain and report them
+    FRAME_START = 2  # count from here on
+    DRAW = 3  # rasterise one prepared triangle
+    READ_DEPTH = 4  # send every depth word of your domain
+    READ_COUNTERS = 5  # send your counts since the last frame start
+
+
+def struct_layout(layout: commands.Layout) -> data.StructLayout:
+    """A layout table as an Amaranth structure, first field in the lowest bits."""
+    return data.StructLayout({
+        name: unsigned(entry) if isinstance(entry, int) else struct_layout(entry)
+        for name, entry in layout.items()
+    })
+
+
+def prepared_triangle_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    return struct_layout(commands.prepared_triangle_layout(configuration))
+
+
+def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A prepared triangle without its interpolants: rows, columns and edges."""
+    layout = prepared_triangle_layout(configuration).members
+    return data.StructLayout({name: shape for name, shape in layout.items() if name != "planes"})
+
+
+def row_shape(configuration: MachineConfiguration) -> Shape:
+    """A row, or one that a processing element would own next, past the picture's end."""
+    beyond = (configuration.maximum_units + 1) << configuration.square_bits
+    return Shape.cast(range(configuration.height + beyond))
+
+
+def walked_outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """An outline, and above it what of the processing element's lattice is known early.
+
+    ``first_row``   the first owned row, where the domain is one lattice
+    ``second_row``  the one after it
+    ``one_row``     that is past the triangle's end
+    """
+    return data.StructLayout({**outline_layout(configuration).members,
+                              "first_row": row_shape(configuration),
+                              "second_row": row_shape(configuration),
+                              "one_row": 1})
+
+
+def planes_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """The interpolants of a prepared triangle."""
+    return struct_layout(commands.planes_layout(configuration))
+
+
+def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """One broadcast word: an operation and its body."""
+    return data.StructLayout({
+        "operation": Operation,
+        "body": data.UnionLayout({"draw": prepared_triangle_layout(configuration)}),
+    })
+
+
+def response_layout() -> data.StructLayout:
+    return data.StructLayout({
+        "kind": unsigned(commands.RESPONSE_KIND_BITS),
+        "value": unsigned(commands.RESPONSE_VALUE_BITS),
+    })
+
+
+def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A run of pixels of one row of a triangle: where it starts and how many pixels it has.
+
+    ``x``, ``y``        first pixel, at the machine's resolution
+    ``end``             column that its last pixel lies before
+    ``left``            the triangle's first column, from which interpolants count
+    ``y_steps``         rows from the triangle's first one, likewise
+    ``stride``          distance between neighbouring pixels of the run
+    ``none``            no pixel at all
+    ``last``            nothing of the triangle follows
+    """
+    return data.StructLayout({
+        "x": unsigned(configuration.x_bits),
+        "y": unsigned(configuration.y_bits),
+        "end": unsigned(configuration.x_bits),
+        "left": unsigned(configuration.x_bits),
+        "y_steps": unsigned(configuration.y_bits),
+        "stride": range(configuration.maximum_units + 1),
+        "none": 1,
+        "last": 1,
+    })

@@ -1,0 +1,1 @@
+"""The central broadcast controller: boots the cage, announces triangles, swaps pictures."""

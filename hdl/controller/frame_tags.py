@@ -1,0 +1,100 @@
+"""The tag of each frame, and when a tag may be used again."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification.configuration import MachineConfiguration
+
+__all__ = ["FrameTags"]
+
+
+class FrameTags(wiring.Component):
+    """Gives every frame a tag that no word in memory has, so that nothing need be cleared.
+
+    Each lane of the memory has one current tag: what is written gets it, and a
+    word with another reads as background.  A frame start gives the depths and the
+    back colours a new one; the front colours keep theirs, however long they are
+    shown.  So no more than two are current: the depths' is that of the colours
+    which were last given one.
+
+    A tag is *free* when no word has it.  Only free tags are given out, so a frame
+    starts on background throughout.  After the boot all are free but the first,
+    which is current; one that is given out is free no more.  What is neither free
+    nor current is stale, and nothing can make it current.  A pass over the memory
+    (``TagSweep``) leaves no word with a tag that has not been current since the
+    pass began: those that were stale then are free when it ends.
+
+    A pass begins when the lower half of the tags is used up, which leaves most of
+    the upper half, a frame each, for the units to find idle clocks for it.  If they
+    find too few a frame start waits: with no free tag, all but two of at least
+    three are stale, so that a pass goes on or begins, and when it ends some are
+    free.  A frame start waits for done besides, so the units are idle but for the
+    scan, and the wait is no longer than a pass.
+
+    Latency: none.  A new tag is current from the clock after ``start`` on.
+
+    Members
+    -------
+    start: In(1)
+        A frame starts in the colours ``back``; only while ``ready``.
+    back: In(1)
+    ready: Out(1)
+        There is a free tag.
+    depth: Out(tag_bits)
+        Current tag of the depths.
+    color: Out(tag_bits) [2]
+        Current tag of each of the two colours.
+    sweep: Out(1)
+        Begin a pass in every unit, in this clock.
+    swept: In(1)
+        No unit is in a pass; low from the clock after ``sweep`` until the last one ends.
+    """
+
+    latency = 0
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        tag_bits = configuration.tag_bits
+        super().__init__({
+            "start": In(1),
+            "back": In(1),
+            "ready": Out(1),
+            "depth": Out(tag_bits, init=1),
+            "color": Out(tag_bits, init=1).array(2),
+            "sweep": Out(1),
+            "swept": In(1),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        tags = range(1, 1 << self.configuration.tag_bits)  # 0 is no frame's
+        lower = 1 << self.configuration.tag_bits - 1
+        free = Signal(len(tags) + 1, init=sum(1 << tag for tag in tags if tag != 1))
+        stale, going, taken, swept = (Signal.like(free, name=name, init=0)
+                                      for name in ("stale", "going", "taken", "swept"))
+        fresh = Signal.like(self.depth, init=0)
+        for tag in reversed(tags):  # the lowest one is the last assignment
+            with m.If(free[tag]):
+                m.d.comb += fresh.eq(tag)
+            m.d.comb += stale[tag].eq(
+                ~free[tag] & (self.color[0] != tag) & (self.color[1] != tag))
+        m.d.comb += self.ready.eq(free.any())
+        m.d.sync += free.eq((free & ~taken) | swept)
+
+        with m.If(self.start):
+            m.d.comb += taken.eq(1 << fresh)
+            m.d.sync += self.depth.eq(fresh)
+            for place, color in enumerate(self.color):
+                with m.If(self.back == place):
+                    m.d.sync += color.eq(fresh)
+
+        with m.FSM():
+            with m.State("IDLE"), m.If(stale.any() & ~free[:lower].any()):
+                m.d.comb += self.sweep.eq(1)
+                m.d.sync += going.eq(stale)
+                m.next = "SWEEPING"
+            with m.State("SWEEPING"), m.If(self.swept):
+                m.d.comb += swept.eq(going)
+                m.next = "IDLE"
+        return m

@@ -1,0 +1,33 @@
+"""What every depth test has towards the pipeline before it and the memory units after it."""
+
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification.configuration import MachineConfiguration
+from ..backplane.connectors import MemoryBus
+from ..rasteriser.interpolator import fragment_layout
+
+__all__ = ["DepthTestSignature"]
+
+
+class DepthTestSignature(wiring.Signature):
+    """Fragments in; reads and writes of memory units out.
+
+    Members
+    -------
+    fragments: In(stream of fragment_layout)
+    memory: Out(MemoryBus)
+        The write address is 0 from the second clock without ``busy`` on: the survey writes there.
+    busy: Out(1)
+        Holds a fragment.
+    forwarded: Out(1)
+        In this clock a depth that was on its way to the memory took the place of its answer.
+    """
+
+    def __init__(self, configuration: MachineConfiguration):
+        super().__init__({
+            "fragments": In(stream.Signature(fragment_layout(configuration))),
+            "memory": Out(MemoryBus(configuration)),
+            "busy": Out(1),
+            "forwarded": Out(1),
+        })

@@ -1,0 +1,125 @@
+"""What a processing element does with each operation it was told."""
+
+from functools import reduce
+from operator import or_
+
+from amaranth.hdl import *
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification.commands import ResponseKind
+from ...golden.specification.configuration import MachineConfiguration
+from ..backplane.words import Operation, response_layout
+
+__all__ = ["ProcessingElementControl"]
+
+
+class ProcessingElementControl(wiring.Component):
+    """Takes the operations that are no triangles, each when the datapath is empty.
+    Control only: it moves no pixel, and triangles do not pass through it.
+
+    Latency: an operation starts in the clock in which it comes, or the datapath is empty.
+
+    Members
+    -------
+    operations: In(stream of Operation)
+        After the triangles before it have been taken; none follow until it is taken.
+    drawing: In(1)
+        The datapath holds something.
+    survey_start, read_back_start: Out(1)
+    survey_done, read_back_done: In(1)
+        The two services.
+    surveying, reading: Out(1)
+        Who has the memory lines; the datapath when neither is high.
+    frame_start: Out(1)
+        Count from the next clock on.
+    first, end: In(id_bits)
+        The domain, for the report.
+    depths: In(stream of depth words)
+        0 while not valid.
+    fragments, busy_cycles: In(32)
+        The counts to report.
+    responses: Out(stream of response_layout)
+        0 while not valid.
+    idle: Out(1)
+        No operation here, and the datapath is empty.
+
+    Fuchs & Johnson, the steps after figure 12.
+    """
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
+            "drawing": In(1),
+            **{f"{service}_{when}": flow(1) for service in ("survey", "read_back")
+               for when, flow in (("start", Out), ("done", In))},
+            "surveying": Out(1),
+            "reading": Out(1),
+            "frame_start": Out(1),
+            "first": In(configuration.id_bits),
+            "end": In(configuration.id_bits),
+            "depths": In(stream.Signature(configuration.depth_bits)),
+            "fragments": In(32),
+            "busy_cycles": In(32),
+            "responses": Out(stream.Signature(response_layout())),
+            "idle": Out(1),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        operations, response = self.operations, self.responses.payload
+
+        with m.FSM() as state:
+            with m.State("DRAW"):
+                m.d.comb += self.idle.eq(~operations.valid & ~self.drawing)
+                with m.If(operations.valid & ~self.drawing), m.Switch(operations.payload):
+                    with m.Case(Operation.SURVEY):
+                        m.d.comb += self.survey_start.eq(1)
+                        m.next = "SURVEY"
+                    with m.Case(Operation.FRAME_START):
+                        m.d.comb += [self.frame_start.eq(1), operations.ready.eq(1)]
+                    with m.Case(Operation.READ_DEPTH):
+                        m.d.comb += self.read_back_start.eq(1)
+                        m.next = "READ_BACK"
+                    with m.Case(Operation.READ_COUNTERS):
+                        m.next = "REPORT_FRAGMENTS"
+                    with m.Default():  # a newer controller's operation: not for this card
+                        m.d.comb += operations.ready.eq(1)
+            with m.State("SURVEY"):
+                m.d.comb += self.surveying.eq(1)
+                with m.If(self.survey_done):
+                    m.next = "REPORT_DOMAIN"
+            with m.State("READ_BACK"):
+                m.d.comb += [
+                    self.reading.eq(1),
+                    self.responses.valid.eq(self.depths.valid),
+                    self.depths.ready.eq(self.responses.ready),
+                ]
+                with m.If(self.read_back_done):
+                    m.d.comb += operations.ready.eq(1)
+                    m.next = "DRAW"
+            for kind, following in (("DOMAIN", "DRAW"), ("FRAGMENTS", "REPORT_BUSY"),
+                                    ("BUSY", "DRAW")):
+                with m.State(f"REPORT_{kind}"):
+                    m.d.comb += self.responses.valid.eq(1)
+                    with m.If(self.responses.ready):
+                        m.d.comb += operations.ready.eq(following == "DRAW")
+                        m.next = following
+
+        # Whoever has nothing to say says 0, so that an or of all is enough, here and in the link.
+        units = Signal.like(self.first)
+        m.d.comb += units.eq(self.end - self.first)
+        reports = {
+            ResponseKind.DOMAIN: (state.ongoing("REPORT_DOMAIN"), self.first << 16 | units),
+            ResponseKind.DEPTH: (self.depths.valid & state.ongoing("READ_BACK"), C(0)),
+            ResponseKind.FRAGMENTS: (state.ongoing("REPORT_FRAGMENTS"), self.fragments),
+            ResponseKind.BUSY: (state.ongoing("REPORT_BUSY"), self.busy_cycles),
+        }
+        kinds = [Mux(now, kind, 0) for kind, (now, _) in reports.items()]
+        values = [Mux(now, value, 0) for now, value in reports.values()]
+        m.d.comb += [
+            response.kind.eq(reduce(or_, kinds)),
+            response.value.eq(reduce(or_, values) | self.depths.payload),
+        ]
+        return m

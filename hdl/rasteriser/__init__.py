@@ -1,0 +1,1 @@
+"""From a prepared triangle to fragments: rows, spans, pixels, depth and colour."""

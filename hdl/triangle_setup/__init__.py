@@ -1,0 +1,1 @@
+"""Triangle set-up in hardware: from vertices to edges and interpolants."""

@@ -1,0 +1,89 @@
+"""The three vertices of a triangle from top to bottom."""
+
+from amaranth.hdl import *
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification import commands
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.ranges import CHANNEL_BITS
+from ..arithmetic.delay import delayed
+from ..backplane.words import struct_layout
+
+__all__ = ["VertexSort", "interpolants", "sorted_vertices_layout"]
+
+
+def interpolants(configuration: MachineConfiguration) -> dict[str, int]:
+    """What is interpolated over a triangle: name → bits of a vertex's value."""
+    channels = () if configuration.shading == "flat" else commands.CHANNELS
+    return {"depth": configuration.depth_bits, **dict.fromkeys(channels, CHANNEL_BITS)}
+
+
+def sorted_vertices_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Vertices ``upper``, ``middle``, ``lower``: position and interpolated values.
+
+    ``least_x``, ``greatest_x``  of the three
+    ``color``                    vertex 0's, where nothing but depth is interpolated
+    """
+    coordinate = signed(configuration.coordinate_bits)
+    vertex = data.StructLayout({"x": coordinate, "y": coordinate, **interpolants(configuration)})
+    flat = 3 * CHANNEL_BITS if configuration.shading == "flat" else 0
+    return data.StructLayout({"upper": vertex, "middle": vertex, "lower": vertex,
+                              "least_x": coordinate, "greatest_x": coordinate, "color": flat})
+
+
+class VertexSort(wiring.Component):
+    """Sorts by y; vertices of the same y keep their order.
+
+    Latency: ``latency`` clocks.  Throughput: a triangle a clock; nothing stalls.
+
+    Members
+    -------
+    triangle: In(triangle_layout)
+        Vertices as in the display list.
+    vertices: Out(sorted_vertices_layout)
+        From top to bottom.
+    """
+
+    latency = 2
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "triangle": In(struct_layout(commands.triangle_layout(configuration))),
+            "vertices": Out(sorted_vertices_layout(configuration)),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        output = self.vertices.shape()
+        given = [self.triangle[f"vertex_{corner}"] for corner in range(3)]
+        corners = []
+        for number, vertex in enumerate(given):
+            corner = Signal(output["upper"].shape, name=f"corner_{number}", reset_less=True)
+            m.d.sync += [corner[name].eq(vertex[name]) for name in corner.shape().members]
+            corners.append(corner)
+
+        def after(axis):
+            """Of each pair, whether the first comes after the second: 0 and 1, 0 and 2, 1 and 2."""
+            flags = Signal(3, name=f"{axis}_after", reset_less=True)
+            m.d.sync += flags.eq(Cat(given[i][axis].as_signed() > given[j][axis].as_signed()
+                                     for i, j in ((0, 1), (0, 2), (1, 2))))
+            return flags
+
+        def at(rank, flags, values):
+            """The value whose vertex has that many before it."""
+            ranks = (flags[0] + flags[1], ~flags[0] + flags[2], ~flags[1] + ~flags[2])
+            first, second, third = values
+            return Mux(ranks[0] == rank, first, Mux(ranks[1] == rank, second, third))
+
+        along_y, along_x = after("y"), after("x")
+        for rank, name in enumerate(("upper", "middle", "lower")):
+            m.d.sync += Value.cast(self.vertices[name]).eq(
+                at(rank, along_y, [Value.cast(corner) for corner in corners]))
+        for rank, name in ((0, "least_x"), (2, "greatest_x")):
+            m.d.sync += self.vertices[name].eq(at(rank, along_x, [corner.x for corner in corners]))
+        if self.configuration.shading == "flat":
+            color = Cat(given[0][name] for name in commands.CHANNELS)
+            m.d.comb += self.vertices.color.eq(delayed(m, color, self.latency, "color"))
+        return m

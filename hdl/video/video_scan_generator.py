@@ -1,0 +1,126 @@
+"""The video scan generator: addresses out, pixels back, sync to the screen."""
+
+from amaranth.hdl import *
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.ranges import CHANNEL_BITS
+from ..arithmetic.delay import delayed
+from ..backplane.connectors import ScanLines
+
+__all__ = ["VideoPins", "VideoScanGenerator"]
+
+
+class VideoPins(wiring.Signature):
+    """What leaves the machine for the screen.
+
+    Members
+    -------
+    pixel: Out(1)
+        High in the first clock of every pixel time, blanking included.
+    active: Out(1)
+        The pixel is in the picture; colours are 0 outside.
+    horizontal_sync, vertical_sync: Out(1)
+        With the polarity of the timing.
+    red, green, blue: Out(8)
+    """
+
+    def __init__(self):
+        super().__init__({
+            "pixel": Out(1),
+            "active": Out(1),
+            "horizontal_sync": Out(1),
+            "vertical_sync": Out(1),
+            "red": Out(CHANNEL_BITS),
+            "green": Out(CHANNEL_BITS),
+            "blue": Out(CHANNEL_BITS),
+        })
+
+
+class VideoScanGenerator(wiring.Component):
+    """Scans the picture out of the memory units, however many there are (figures 6 to 9).
+
+    It counts through one standard scan at the highest resolution, and announces
+    each pixel on the scan lines once: that is the scan's time slot, the other
+    clocks of the pixel belong to the processing elements.  Which units read, and
+    which of them drives the bus, they know themselves.
+
+    Latency: a pixel is on the pins five clocks after its fetch was announced.
+    Throughput: a pixel every ``clocks_per_pixel`` clocks.
+
+    Members
+    -------
+    scan: Out(ScanLines)
+    background: In(24)
+        Shown where nothing has been drawn: red in the low byte, then green, blue.
+    start: Out(1)
+        High for one clock when a scan begins, with its vertical sync; at least a line before
+        its first fetch.
+    pins: Out(VideoPins)
+    """
+
+    #: Clocks from the announcement to when it is shown, on to the video bus, and to the pins.
+    show_latency = 3
+    bus_latency = show_latency + 1
+    latency = bus_latency + 1
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
+        super().__init__({
+            "scan": Out(ScanLines(configuration)),
+            "background": In(3 * CHANNEL_BITS),
+            "start": Out(1),
+            "pins": Out(VideoPins()),
+        })
+
+    def elaborate(self, platform):
+        m = Module()
+        timing, scan, pins = self.configuration.timing, self.scan, self.pins
+        clock = Signal(range(self.configuration.clocks_per_pixel))
+        column = Signal(range(timing.horizontal_total))
+        line = Signal(range(timing.vertical_total))
+        m.d.sync += clock.eq(clock + 1)
+        with m.If(clock == self.configuration.clocks_per_pixel - 1):
+            m.d.sync += [clock.eq(0), column.eq(column + 1)]
+            with m.If(column == timing.horizontal_total - 1):
+                m.d.sync += [column.eq(0), line.eq(line + 1)]
+                with m.If(line == timing.vertical_total - 1):
+                    m.d.sync += line.eq(0)
+
+        # Order on both axes: sync, back porch, active, front porch.
+        left = timing.horizontal_sync + timing.horizontal_back
+        top = timing.vertical_sync + timing.vertical_back
+        pixel = Signal()
+        active = Signal()
+        horizontal_sync = Signal()
+        vertical_sync = Signal()
+        m.d.comb += [
+            pixel.eq(clock == 0),
+            active.eq((column >= left) & (column < left + timing.horizontal_active)
+                      & (line >= top) & (line < top + timing.vertical_active)),
+            horizontal_sync.eq((column < timing.horizontal_sync)
+                               == timing.horizontal_sync_positive),
+            vertical_sync.eq((line < timing.vertical_sync) == timing.vertical_sync_positive),
+            self.start.eq(pixel & (column == 0) & (line == 0)),
+            scan.fetch.valid.eq(pixel & active),
+            scan.fetch.x.eq(column - left),
+            scan.fetch.y.eq(line - top),
+        ]
+
+        def when_on_bus(signal, name):
+            """The signal when its pixel is on the video bus."""
+            return delayed(m, signal, self.bus_latency, name, reset_less=False)
+
+        on_bus = when_on_bus(active, "active")
+        color = Mux(scan.drawn, scan.video, self.background)
+        m.d.comb += scan.show.eq(
+            delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
+        m.d.sync += [
+            pins.pixel.eq(when_on_bus(pixel, "pixel")),
+            pins.active.eq(on_bus),
+            pins.horizontal_sync.eq(when_on_bus(horizontal_sync, "horizontal_sync")),
+            pins.vertical_sync.eq(when_on_bus(vertical_sync, "vertical_sync")),
+            Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, color, 0)),
+        ]
+        return m

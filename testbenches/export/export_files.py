@@ -1,0 +1,157 @@
+"""The machine as files for other people's tools: Verilog, its description, lint waivers."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from contextlib import ExitStack
+from dataclasses import dataclass, fields
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.errors import InputError
+from ..atomic_output import atomic_file, output_errors
+from ..machine_options import (
+    MachineOptions,
+    machine_for_scene,
+    machine_without_scene,
+    option_words,
+    resolution_warnings,
+)
+
+#: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
+#: Amaranth and so is not asked here).
+COMPONENT_NAMES = (
+    "central_broadcast_controller", "processing_element", "memory_unit", "video_scan_generator",
+    "broadcast_queue", "depth_read_back", "divider", "edge_columns", "edge_setup",
+    "fragment_stepper", "frame_tags", "id_increment", "interpolator", "lattice_block",
+    "memory_bus_selector", "one_port_depth_test", "one_port_lane", "one_port_memory",
+    "pipelined_multiplier", "pixel_address", "pixel_box", "plane_setup",
+    "processing_element_control", "response_link", "result_queue", "sampling_grid",
+    "scan_address", "span_clip", "survey", "tag_sweep", "triangle_outline", "triangle_rows",
+    "triangle_setup", "triangle_spans", "two_port_depth_test", "two_port_memory", "vertex_sort",
+)
+
+
+#: Verilator's lint rules that do not apply, with reasons; copied beside every export.
+WAIVERS = files(__package__) / "machine.vlt"
+
+
+@dataclass(frozen=True)
+class Export:
+    """What was written.
+
+    ``verilog``, ``description``, ``waivers``  the files
+    ``top``        the top module
+    ``lines``      of Verilog
+    ``precision``  why the interpolants have their fraction bits
+    ``warnings``   one line each
+    """
+
+    configuration: MachineConfiguration
+    verilog: Path
+    description: Path
+    waivers: Path
+    top: str
+    lines: int
+    precision: str
+    warnings: tuple[str, ...]
+
+
+def export(output: Path, scene: str | Path | None = None, options: MachineOptions | None = None,
+           component: str | None = None) -> Export:
+    """Write ``output`` (a ``.v`` file) and beside it the same name with ``.json`` and ``.vlt``.
+
+    ``component`` is one of ``COMPONENT_NAMES``, or None for the whole machine.  The same arguments
+    write the same bytes.  Raises ``InputError`` for whatever cannot be used or written; then
+    nothing has changed.
+    """
+    options = options or MachineOptions()
+    if output.suffix != ".v":
+        raise InputError(f"-o: {output} does not end in .v, as a Verilog file should")
+    if component is not None and component not in COMPONENT_NAMES:
+        raise InputError(f"component: {component!r} is none of {', '.join(COMPONENT_NAMES)}")
+    description, waivers = output.with_suffix(".json"), output.with_suffix(".vlt")
+    with ExitStack() as written:
+        places = [written.enter_context(atomic_file(target, "-o"))
+                  for target in (output, description, waivers)]
+        notes: tuple[str, ...] = ()
+        if scene is None:
+            configuration = machine_without_scene(options)
+        else:
+            listed, configuration = machine_for_scene(scene, options)
+            notes = listed.notes
+        precision = _precision(configuration, options, scene)
+        text, facts = _translated(configuration, component)
+        text = _header(configuration, options, scene, component, precision) + text
+        contents = (text, json.dumps(facts | {"precision": precision}, indent=1) + "\n",
+                    WAIVERS.read_text("utf-8"))
+        with output_errors(output, "-o"):
+            for place, content in zip(places, contents, strict=True):
+                place.write_text(content, encoding="utf-8", newline="\n")
+    return Export(configuration, output, description, waivers, facts["top"], text.count("\n"),
+                  precision, (*notes, *resolution_warnings(configuration)))
+
+
+def export_summary(exported: Export) -> str:
+    """What the command line says of it."""
+    c = exported.configuration
+    return "\n".join((
+        f"{exported.verilog}: module {exported.top}, {exported.lines:,} lines of Verilog",
+        f"{exported.description}: ports, number formats, timing, command words",
+        f"{exported.waivers}: lint waivers for Verilator",
+        f"machine: {c.cards}, {c.width}x{c.height}, {c.words} words a memory unit, {c.shading}",
+        f"fraction bits: {exported.precision}",
+    ))
+
+
+def _translated(configuration: MachineConfiguration, component: str | None) -> tuple[str, dict]:
+    # They load Amaranth: only those who export wait for it.
+    from .machine_json import component_for, describe
+    from .verilog import component_verilog, machine_verilog
+
+    if component is None:
+        text = machine_verilog(configuration)
+    else:
+        text = component_verilog(component_for(configuration, component), component)
+    return text, describe(configuration, text, component)
+
+
+def _precision(configuration: MachineConfiguration, options: MachineOptions,
+               scene: str | Path | None) -> str:
+    bits = configuration.fraction_bits
+    subject = ("every triangle whose vertices are on the screen" if scene is None else
+               _scene_name(scene))
+    if options.max_error:
+        return f"{bits}, at most {options.max_error} LSB of depth off for {subject}"
+    if options.machine().get("fraction_bits", "exact") != "exact":
+        source = "asked for" if options.fraction_bits is not None else "the preset's"
+        return f"{bits}, {source}"
+    return f"{bits}, exact for {subject}"
+
+
+def _scene_name(scene: str | Path) -> str:
+    """A file without its folder: the same file gives the same text wherever it lies."""
+    return str(scene).replace("\\", "/").rpartition("/")[2]
+
+
+def _header(configuration: MachineConfiguration, options: MachineOptions, scene: str | Path | None,
+            component: str | None, precision: str) -> str:
+    words = ["cardcage export", *([_scene_name(scene)] if scene is not None else []),
+             *option_words(options), *(["--component", component] if component else [])]
+    built = ", ".join(f"{field.name} {getattr(configuration, field.name)}"
+                      for field in fields(configuration) if field.name != "timing")
+    paragraphs = [
+        f"Cardcage {version('cardcage')}: {component or 'machine'}, made by",
+        "  " + " ".join(" ".join(words).split()),
+        f"Configuration: {built}.",
+        f"Fraction bits: {precision}.",
+        "One clock, clk; rst is synchronous. Streams pass a word in a clock in which valid and "
+        "ready are high. No memory has initial contents. The .json beside this file explains every "
+        "port.",
+    ]
+    return "".join(f"// {line}\n" for paragraph in paragraphs
+                   for line in textwrap.wrap(paragraph, 96, subsequent_indent="    ",
+                                             drop_whitespace=True, break_long_words=False)) + "\n"

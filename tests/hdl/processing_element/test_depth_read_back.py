@@ -1,0 +1,50 @@
+"""Depth words of a domain, in order."""
+
+import pytest
+from hdl_bench.bench import Drive, Service, simulate
+from hdl_bench.memory import MemoryLines
+from hdl_bench.pictures import small_machine
+from hdl_bench.streams import Sink, no_pause, pauses
+
+from cardcage.hdl.processing_element.depth_read_back import DepthReadBack
+
+CONFIGURATION = small_machine("PMMMM", 8, 8)
+
+
+def read_back(first, end, words, *, scan=0.0, seed=0, rounds=1, pause=no_pause, gap=no_pause):
+    dut = DepthReadBack(configuration=CONFIGURATION)
+    memory = MemoryLines(dut.memory, first=first, end=end, words=CONFIGURATION.words,
+                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan)
+
+    def inputs(ctx, clock):
+        ctx.set(dut.first, first)
+        ctx.set(dut.end, end)
+        ctx.set(dut.last_word, words - 1)
+
+    expected = [memory.depth[unit, address]
+                for unit in range(first, end) for address in range(words)] * rounds
+    sink = Sink(dut.depths, len(expected), pause, zero=True)
+    taken = []
+    service = Service(dut, rounds, gap, lambda ctx: taken.append(len(sink.items)))
+    # The sink looks first: at done the last word has been taken.
+    simulate(dut, Drive(inputs), sink, service, memory, after=3)
+    assert sink.items == expected
+    assert taken == [len(expected) * (round_ + 1) // rounds for round_ in range(rounds)]
+    assert not memory.writes
+    return service, sink, memory
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("first", "end", "words"), [(0, 4, 16), (1, 3, 5), (3, 4, 1), (2, 2, 9)])
+def test_units_in_order_addresses_ascending(first, end, words, seed):
+    read_back(first, end, words, scan=0.3 * seed, seed=seed, rounds=2, pause=pauses(seed),
+              gap=pauses(-seed))
+
+
+def test_latency_and_throughput():
+    service, sink, memory = read_back(0, 4, 16)
+    reads = [read[0] for read in memory.reads]
+    assert reads == list(range(1, 129, 2))
+    assert sink.clocks == [clock + DepthReadBack.latency for clock in reads]
+    # Done in the clock in which the last word is taken.
+    assert service.ended == [sink.clocks[-1]]
