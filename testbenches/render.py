@@ -11,16 +11,15 @@ from typing import Any
 from ..golden.reference.exact import depth_complexity
 from ..golden.scene_display_list import SceneDisplayList
 from ..golden.specification.configuration import MachineConfiguration
-from ..golden.specification.display_list import DisplayList
 from ..golden.specification.errors import InputError
-from .atomic_output import atomic_file, atomic_folder, output_errors
-from .compare import compare
-from .engine import Progress
-from .engines import AUTO, make_engine
+from .engines.choose_engine import AUTO
+from .engines.engine import Progress
+from .frames.compare import compare
+from .frames.rendering import Rendering
+from .frames.responses import MachineError, Simulation
+from .frames.simulation import simulate_frame
 from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
-from .rendering import Rendering
-from .simulation import MachineError, Simulation, simulate
-from .verilator_tool import ToolMissingError
+from .support.atomic_output import atomic_file, atomic_folder, output_errors
 
 #: Pretty, and some 20 seconds in the slowest engine.
 DEFAULT_SCENE = "teapot:tessellation=3"
@@ -91,7 +90,7 @@ class RenderJob:
                   progress: Progress | None) -> Rendering:
         if out is None:
             return self._judged(self._simulated(recording, progress))
-        from .report import REPORT_FILES, write_report  # charts take a second to load
+        from .reports.frame_report import REPORT_FILES, write_report  # charts take a second to load
 
         with atomic_folder(out, REPORT_FILES) as folder:
             rendering = self._judged(self._simulated(recording, progress))
@@ -121,21 +120,6 @@ class RenderJob:
             warnings=tuple(warnings),
             wall_seconds=time.perf_counter() - self.began,
         )
-
-
-def simulate_frame(engine: str, configuration: MachineConfiguration, display_list: DisplayList,
-                   **options: Any) -> Simulation:
-    """``simulation.simulate`` with the engine of that name, for a command line.
-
-    Raises ``InputError`` where the engine cannot run here, ``MachineError`` where the machine
-    fails.
-    """
-    try:
-        return simulate(configuration, display_list, make_engine(engine), **options)
-    except ToolMissingError as missing:
-        raise InputError(f"--engine {engine}: {missing}; or use --engine pysim") from None
-    except (TimeoutError, AssertionError) as error:
-        raise MachineError(f"the machine failed: {error}") from error
 
 
 def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | None = None,

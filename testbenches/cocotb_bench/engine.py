@@ -16,9 +16,9 @@ from typing import Any
 
 from ...golden.specification.commands import ResponseKind
 from ...golden.specification.errors import InputError
-from ..engine import EngineRun, Job, Progress
+from ..engines.engine import EngineRun, Job, Progress
+from ..engines.verilator_tool import ToolMissingError
 from ..export.verilog import machine_verilog
-from ..verilator_tool import ToolMissingError
 from .exchange import FOLDER_VARIABLE, read_outcome, read_progress, write_job
 from .simulators import Simulator, find_simulator
 from .violation import ProtocolError

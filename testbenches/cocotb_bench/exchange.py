@@ -13,7 +13,7 @@ import numpy as np
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ...golden.specification.video_timing import VideoTiming
-from ..engine import Job, Scan
+from ..engines.engine import Job, Scan
 
 #: Environment variable that names the folder.
 FOLDER_VARIABLE = "CARDCAGE_BENCH"

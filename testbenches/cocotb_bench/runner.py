@@ -14,7 +14,7 @@ from typing import Any
 from cocotb_tools.runner import get_runner
 
 TOP = "machine"
-TEST_MODULE = f"{__package__}.bench"
+TEST_MODULE = f"{__package__}.frame_run"
 
 
 def main(request: dict[str, Any]) -> None:

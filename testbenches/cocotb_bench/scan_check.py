@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.specification.configuration import MachineConfiguration
-from ..engine import Scan
+from ..engines.engine import Scan
 from .conversation_check import domains
 from .violation import ProtocolError
 

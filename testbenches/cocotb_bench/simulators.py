@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ..verilator_tool import ToolMissingError, find_verilator
+from ..engines.verilator_tool import ToolMissingError, find_verilator
 
 #: Variables that would make cocotb's runner believe it was called for something else.
 _FOREIGN_VARIABLES = ("PYTEST_CURRENT_TEST", "WAVES", "GUI", "COCOTB_TEST_FILTER",

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
-from ..atomic_output import atomic_file, output_errors
 from ..machine_options import (
     MachineOptions,
     machine_for_scene,
@@ -20,6 +19,7 @@ from ..machine_options import (
     option_words,
     resolution_warnings,
 )
+from ..support.atomic_output import atomic_file, output_errors
 
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
 #: Amaranth and so is not asked here).

@@ -9,9 +9,10 @@ from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.display_list import DisplayList
-from cardcage.testbenches.engine import Job
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import expected_video, frame_commands, simulate
+from cardcage.testbenches.engines.engine import Job
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.simulation import expected_video, simulate
 
 BACKGROUND = (12, 34, 56)
 SCREEN = [[4, -16], [15.9, 8.5], [-15, 8.5]]  # covers all of 8 by 8 pixels

@@ -7,8 +7,8 @@ import pytest
 from frames import check_bit_true, draw, golden_picture, random_list
 
 from cardcage.golden.planning.machines import configure
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.simulation import simulate
 
 LIST = random_list(7, 12, width=16, height=16)
 

@@ -14,7 +14,7 @@ from frames import (
 )
 
 from cardcage.golden.specification.commands import ResponseKind
-from cardcage.testbenches import pysim_engine
+from cardcage.testbenches.engines import pysim_engine
 
 
 @pytest.fixture

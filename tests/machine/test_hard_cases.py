@@ -11,9 +11,9 @@ from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.configuration import MachineConfiguration
-from cardcage.testbenches.simulation import expected_video, simulate
-from cardcage.testbenches.verilator_engine import VerilatorEngine
-from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
+from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.frames.simulation import expected_video, simulate
 
 #: Cards that draw the cases of each size; every case has one of these sizes.
 CARDS = {(32, 32): "PMPMMM", (97, 61): "PMM", (1000, 333): "PMM", (640, 480): "PMM"}

@@ -24,8 +24,8 @@ from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.sampling_grid import Grid
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.simulation import simulate
 
 
 def nearest(value):
@@ -129,7 +129,7 @@ def test_no_bias_of_half_a_spacing(monkeypatch, record_property):
     monkeypatch.setitem(sys.modules, golden_setup.__name__, mutant)
     exec(compile(source.replace(right, right.removesuffix(" + 1")), golden_setup.__file__, "exec"),
          mutant.__dict__)
-    monkeypatch.setattr("cardcage.testbenches.simulation.prepare", mutant.prepare)
+    monkeypatch.setattr("cardcage.testbenches.frames.frame_job.prepare", mutant.prepare)
     assert_caught(name, display_list, machine_for(display_list, bits), predicted, record_property,
                   "no bias")
     # With 2**31 the slope of -1/3 is rounded down: every third row of the lower half, but the
@@ -156,7 +156,7 @@ def test_wrapped_instead_of_saturated(monkeypatch, record_property):
 
 def unchecked(monkeypatch):
     """The host sends lists that do not fit the machine."""
-    monkeypatch.setattr("cardcage.testbenches.simulation.fitted",
+    monkeypatch.setattr("cardcage.testbenches.frames.frame_job.fitted",
                         lambda configuration, display_list: display_list)
 
 

@@ -11,9 +11,10 @@ from cardcage.golden.reference.triangle_setup import prepare
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.commands import OPCODE_BITS, Opcode
 from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import frame_commands, simulate
-from cardcage.testbenches.verilator_engine import VerilatorEngine
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.simulation import simulate
 
 #: Degenerate, between centres, and off the screen.
 INVISIBLE = triangles(

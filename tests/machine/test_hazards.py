@@ -7,8 +7,8 @@ from frames import PIXEL, check, draw, random_list, triangles
 
 from cardcage.golden.planning.machines import configure
 from cardcage.hdl.machine import Machine
-from cardcage.testbenches import pysim_engine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines import pysim_engine
+from cardcage.testbenches.frames.simulation import simulate
 
 
 class Probe:

@@ -8,8 +8,8 @@ from frames import draw, random_list, spans_twice
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import depth_complexity
 from cardcage.golden.specification.commands import Fault, ResponseKind
-from cardcage.testbenches.engine import Job
-from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.engine import Job
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
 
 SIZE = {"width": 13, "height": 9}
 

@@ -7,8 +7,8 @@ from amaranth.sim import Simulator
 from frames import check, triangles
 
 from cardcage.golden.planning.machines import configure
-from cardcage.testbenches import pysim_engine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines import pysim_engine
+from cardcage.testbenches.frames.simulation import simulate
 
 
 class Ports:

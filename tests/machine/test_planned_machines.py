@@ -15,11 +15,12 @@ from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode
 from cardcage.golden.specification.errors import InputError
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.scene_plan import CYCLE_ACCURACY
-from cardcage.testbenches.simulation import frame_commands, simulate
-from cardcage.testbenches.verilator_engine import VerilatorEngine
-from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.command_line.tables.scene_plan import CYCLE_ACCURACY
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
+from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.simulation import simulate
 
 #: Flat; a mesh of small triangles; large ones with a colour at each vertex.
 SCENES = {"flat": "tetra:depth=2", "small": "sphereflake:depth=0", "large": "random:n=8,size=30"}
@@ -86,8 +87,8 @@ def test_one_bit_less_is_wrong(field):
     with pytest.raises(InputError, match="export a machine for this list"):
         frame_commands(narrower, FULL)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("cardcage.testbenches.simulation.fitted", lambda _, listed: fitted(machine,
-                                                                                         listed))
+        patch.setattr("cardcage.testbenches.frames.frame_job.fitted",
+                      lambda _, listed: fitted(machine, listed))
         simulation = simulate(narrower, FULL, PysimEngine(), memory_seed=7)
     with pytest.raises(AssertionError, match="differ"):
         check(machine, FULL, simulation)

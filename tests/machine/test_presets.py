@@ -8,8 +8,8 @@ from frames import check, random_list
 from cardcage.golden.planning.machines import PRESETS, preset
 from cardcage.golden.specification.video_timing import STANDARD_TIMINGS
 from cardcage.hdl.machine import Machine
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.simulation import simulate
 
 
 def test_the_paper_preset():

@@ -5,9 +5,9 @@ from frames import check, golden_picture, random_list
 
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.specification.commands import ResponseKind
-from cardcage.testbenches.engine import Job
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import expected_video, simulate
+from cardcage.testbenches.engines.engine import Job
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.simulation import expected_video, simulate
 
 LIST = random_list(11, 10, width=16, height=16)
 

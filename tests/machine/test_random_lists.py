@@ -6,8 +6,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cardcage.golden.planning.machines import configure
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import simulate
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.simulation import simulate
 
 WIDTH, HEIGHT, SUB_BITS, DEPTH_BITS = 8, 6, 4, 10
 LIMIT = 16  # pixels of guard band to either side of the origin

@@ -7,7 +7,7 @@ import trimesh
 from click.testing import CliRunner
 from PIL import Image
 
-from cardcage.testbenches.cli import main
+from cardcage.testbenches.command_line.cli import main
 
 
 def render(folder, *arguments):

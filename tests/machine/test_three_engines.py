@@ -6,10 +6,11 @@ from frames import check, random_list
 
 from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
-from cardcage.testbenches.pysim_engine import PysimEngine
-from cardcage.testbenches.simulation import frame_job, simulate
-from cardcage.testbenches.verilator_engine import VerilatorEngine
-from cardcage.testbenches.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
+from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.frames.frame_job import frame_job
+from cardcage.testbenches.frames.simulation import simulate
 
 
 def test_three_identical_frames():

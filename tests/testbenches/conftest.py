@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from cardcage.golden.specification.commands import ResponseKind
-from cardcage.testbenches.engine import EngineRun, Job, Progress, Scan
-from cardcage.testbenches.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.engine import EngineRun, Job, Progress, Scan
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.render import RenderOptions, prepare_render
 
 #: Every machine of these tests draws this.
@@ -20,7 +20,8 @@ ARGUMENTS = [SCENE, "--cards", "PM", "--size", "16x16"]
 @pytest.fixture(autouse=True)
 def only_pysim(monkeypatch):
     """No model is compiled where a test does not ask for it."""
-    monkeypatch.setattr("cardcage.testbenches.engines.ENGINES", {"pysim": PysimEngine})
+    monkeypatch.setattr("cardcage.testbenches.engines.choose_engine.ENGINES",
+                        {"pysim": PysimEngine})
 
 
 class RecordingEngine:
@@ -78,7 +79,8 @@ def draw(recording, monkeypatch):
 
     def run(engine=None, out=None, scene=SCENE, **options):
         chosen = engine or recording
-        monkeypatch.setattr("cardcage.testbenches.engines.ENGINES", {"pysim": lambda: chosen})
+        monkeypatch.setattr("cardcage.testbenches.engines.choose_engine.ENGINES",
+                            {"pysim": lambda: chosen})
         return prepare_render(scene, RenderOptions(**OPTIONS | options)).run(out)
 
     return run

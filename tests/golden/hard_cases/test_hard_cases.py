@@ -15,7 +15,7 @@ from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
 from cardcage.golden.specification.fixed_point import ceil_divide
 from cardcage.golden.specification.picture import NO_PRIMITIVE
-from cardcage.testbenches.cli import main
+from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.machine_options import MachineOptions, machine_for_scene
 
 COARSE = (6, 0)

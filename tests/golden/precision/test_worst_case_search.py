@@ -14,7 +14,7 @@ from cardcage.golden.precision.worst_case_search import (
 )
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.specification.errors import InputError
-from cardcage.testbenches import bound_search
+from testbenches.studies import bound_search
 
 SIZES = [(512, 512), (640, 480), (97, 61), (4096, 4096)]
 SEEDS = range(2)

@@ -1,0 +1,104 @@
+"""``cardcage check-verilog``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ...golden.planning.scene_needs import fitted
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
+from ..cocotb_bench.exchange import read_configuration
+from ..cocotb_bench.simulators import SIMULATORS
+from ..engines.verilator_tool import ToolMissingError
+from ..frames.compare import Comparison, compare
+from ..frames.responses import MachineError, Simulation
+from ..frames.simulation import simulate
+from .command_group import EXIT_DIFFERENT
+
+
+@click.command(name="check-verilog")
+@click.argument("verilog", type=click.Path(path_type=Path), metavar="MACHINE.v")
+@click.argument("display_list", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz")
+@click.option("--simulator", type=click.Choice(list(SIMULATORS)), default="verilator",
+              show_default=True, help="Who simulates the Verilog.")
+@click.option("--configuration", type=click.Path(path_type=Path), metavar="MACHINE.json",
+              help="What the Verilog was built for.  [default: beside MACHINE.v, same name]")
+@click.option("--stall-seed", type=click.IntRange(min=0), default=1, show_default=True,
+              metavar="SEED", help="Of the host's pauses on both streams.")
+@click.option("--no-stalls", is_flag=True, help="The host never pauses.")
+@click.option("--memory-seed", type=click.IntRange(min=0), default=1, show_default=True,
+              metavar="SEED", help="Of the memories' contents at power-on in Verilator; Icarus "
+              "has them unknown (X).")
+@click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE",
+              help="Write every signal: .vcd from Verilator, .fst from Icarus.")
+def check_verilog_command(
+        verilog: Path, display_list: Path, simulator: str, configuration: Path | None,
+        stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
+    """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.
+
+    \b
+    Examples:
+      cardcage check-verilog machine.v display_list.npz
+      cardcage check-verilog machine.v display_list.npz --simulator icarus
+
+    \b
+    Exit status: 0 done and equal, 1 the picture differs from the golden model or a rule of the
+    documents is broken, 2 the input is wrong or the simulator is missing.
+    """
+    machine = read_configuration(configuration or verilog.with_suffix(".json"))
+    listed = DisplayList.load(display_list)
+    _check_match(machine, listed)
+    if waveform is not None and not waveform.parent.is_dir():
+        raise InputError(f"--waveform: there is no folder {waveform.parent}")
+    text = _text(verilog)
+    from ..cocotb_bench.engine import CocotbEngine  # loads Amaranth
+
+    try:
+        simulation = simulate(machine, listed, CocotbEngine(simulator, verilog=text),
+                              memory_seed=memory_seed, waveform=waveform,
+                              stall_seed=None if no_stalls else stall_seed)
+    except (AssertionError, TimeoutError, MachineError) as error:
+        raise MachineError(f"{verilog}: {error}") from None
+    except ToolMissingError as missing:
+        raise InputError(str(missing)) from None
+    comparison = compare(machine, listed, simulation)
+    click.echo(_summary(simulation, comparison))
+    if not comparison.equal:
+        click.get_current_context().exit(EXIT_DIFFERENT)
+
+
+def _text(verilog: Path) -> str:
+    try:
+        return verilog.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{verilog}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{verilog}: not a text in UTF-8; is this Verilog?") from None
+
+
+def _check_match(machine: MachineConfiguration, listed: DisplayList) -> None:
+    """``InputError`` where the machine is built for other display lists."""
+    fitted(machine, listed)
+    if machine.shading == "flat" and not listed.flat:
+        raise InputError("display list: its triangles have more than one colour, the machine is "
+                         "built for flat ones: export a machine for this list")
+
+
+def _summary(simulation: Simulation, comparison: Comparison) -> str:
+    lines = [
+        f"equal: {comparison.pixels_compared:,} colours and {comparison.depths_compared:,} depths "
+        "compared, 0 different" if comparison.equal else
+        f"DIFFERENT: {comparison.pixels_different:,} of {comparison.pixels_compared:,} colours, "
+        f"{comparison.depths_different:,} of {comparison.depths_compared:,} depths",
+        f"  {simulation.engine}: {simulation.cycles:,} cycles, {len(simulation.scans)} whole scans "
+        f"in {simulation.seconds:.1f} s, after {simulation.build_seconds:.1f} s of building",
+    ]
+    if (first := comparison.first_difference) is not None:
+        lines.insert(1, f"  first wrong pixel {first.pixel}: expected colour "
+                     f"{first.expected.color} depth {first.expected.depth}, got colour "
+                     f"{first.got.color} depth {first.got.depth}")
+    return "\n".join(lines)
+

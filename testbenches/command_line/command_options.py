@@ -1,0 +1,119 @@
+"""The options that choose a machine, and what their values mean: sizes and precisions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from ...golden.planning.machines import MAXIMUM_ERROR, PRESETS
+from ...golden.specification.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS
+from ...golden.specification.fixed_point import MAX_FRACTION_BITS
+from ...golden.specification.ranges import MAXIMUM_SIZE
+from ..machine_options import SETUPS
+
+
+class Size(click.ParamType):
+    """``640x480`` as (640, 480)."""
+
+    name = "WxH"
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[int, int]:
+        match = re.fullmatch(r"([0-9]{1,9})[xX]([0-9]{1,9})", value.strip())
+        if match is None:
+            self.fail(f"{value!r} is not a width and a height such as 64x64", param, ctx)
+        width, height = int(match[1]), int(match[2])
+        for field, pixels in (("width", width), ("height", height)):
+            if not 1 <= pixels <= MAXIMUM_SIZE:
+                self.fail(f"{value!r}: {field} {pixels} is not from 1 to {MAXIMUM_SIZE}", param,
+                          ctx)
+        return width, height
+
+
+class FractionBits(click.ParamType):
+    """A number of bits, or ``exact``."""
+
+    name = "N|exact"
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> int | str:
+        if value == "exact":
+            return "exact"
+        if not re.fullmatch(r"[0-9]{1,9}", value) or int(value) > MAX_FRACTION_BITS:
+            self.fail(f"{value!r} is neither 'exact' nor a whole number from 0 to "
+                      f"{MAX_FRACTION_BITS}", param, ctx)
+        return int(value)
+
+
+class Several(click.ParamType):
+    """Values with commas between them, each of another type."""
+
+    def __init__(self, each: click.ParamType, name: str) -> None:
+        self.each = each
+        self.name = name
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[Any, ...]:
+        return tuple(self.each.convert(word, param, ctx) for word in value.split(","))
+
+
+#: Together one for each field of ``machine_options.MachineOptions``.
+_CAGE_OPTIONS = (
+    click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
+                 "processing element, M a memory unit.  [default: 2x(PMM)]"),
+    click.option("--size", type=Size(), metavar="WxH",
+                 help="Highest resolution.  [default: 64x64]"),
+    click.option("--preset", type=click.Choice(list(PRESETS)),
+                 help="A named machine; other options override it."),
+)
+_PRECISION_OPTIONS = (
+    click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
+                 help="Fraction bits of depth and colour; exact takes what the scene needs.  "
+                 "[default: exact]"),
+    click.option("--max-error", type=click.IntRange(0, MAXIMUM_ERROR), metavar="LSB",
+                 help="In place of fraction bits: the fewest at which no depth is more than that "
+                 "off; 0 is exact."),
+)
+_FURTHER_OPTIONS = (
+    click.option("--shading", type=click.Choice(["auto", "flat", "gouraud"]), default="auto",
+                 show_default=True, help="Colour interpolators in the machine, or not; auto has "
+                 "them where the scene needs them."),
+    click.option("--words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+                 help="Words of each memory unit; too few make the picture coarser.  "
+                 "[default: what the size needs]"),
+    click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
+                 help="Clocks a pixel lasts on the video output.  [default: 2]"),
+    click.option("--memory-ports", type=click.IntRange(1, 2), metavar="1|2",
+                 help="Ports of each memory unit's RAM: one for all as in 1979, or one to read and "
+                 "one to write, as FPGAs have.  [default: 1]"),
+    click.option("--block", type=click.IntRange(1, MAXIMUM_BLOCK), metavar="N",
+                 help="Interlace processing elements in squares of NxN pixels, N a power of two; "
+                 "each wants as many memory units.  1 interlaces pixel by pixel, as in 1979, in "
+                 "any shares.  [default: 1]"),
+    click.option("--skew", is_flag=True, default=None, help="Interlaced pixel by pixel, let two "
+                 "memory units of a processing element alternate along its rows, not only from "
+                 "row to row: faster where each has one port."),
+    click.option("--setup", type=click.Choice(list(SETUPS)),
+                 help="Who sets triangles up: the host, or the machine itself, with one divider "
+                 "of each kind or a pipeline of them.  [default: host]"),
+)
+
+
+def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that choose a machine."""
+    return _with(command, _CAGE_OPTIONS + _PRECISION_OPTIONS + _FURTHER_OPTIONS)
+
+
+def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The same but for its precision."""
+    return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS)
+
+
+def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]
+          ) -> Callable[..., Any]:
+    for option in reversed(options):
+        command = option(command)
+    return command

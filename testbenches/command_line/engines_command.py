@@ -1,0 +1,64 @@
+"""``cardcage engines``."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Any
+
+import click
+
+from ...golden.planning.machines import PRESETS, preset
+from ...golden.reference.triangle_setup import scene_fraction_bits
+from ...golden.scene_display_list import make_display_list
+from ...golden.specification.errors import InputError
+from ..engines.verilator_tool import ToolMissingError
+from .progress import busy
+
+
+@click.command(name="engines")
+@click.option("--preset", "name", type=click.Choice(list(PRESETS)), default="paper",
+              show_default=True, help="The machine.")
+@click.option("--scene", default="teapot:tessellation=8", show_default=True, help="What it draws.")
+@click.option("--cards", metavar="CARDS", help="Instead of the preset's.")
+@click.option("--runs", type=click.IntRange(1), default=5, show_default=True,
+              help="Of which the median counts.")
+@click.option("--pysim-cycles", type=click.IntRange(1), default=2048, show_default=True,
+              help="Cycles of the slow engine that are waited for.")
+@click.option("--json", "as_json", is_flag=True, help="For programs: one object.")
+def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_cycles: int,
+                    as_json: bool) -> None:
+    """Measure how fast the simulators are on this computer.
+
+    Simulated cycles a second of one frame: through the Verilator engine, in a bare loop that only
+    toggles the clock of the same compiled model, and in Amaranth's own simulator.
+
+    \b
+    Examples:
+      cardcage engines
+      cardcage engines --preset small --scene teapot
+    """
+    from ..speed.engine_speed import measure_engines  # loads Amaranth
+
+    size: dict[str, Any] = {axis: PRESETS[name][axis] for axis in ("width", "height")}
+    listed = make_display_list(scene, **size).display_list
+    changes = {"cards": cards} if cards else {}
+    machine = preset(name, fraction_bits=scene_fraction_bits(listed), **changes)
+    try:
+        with busy("measuring engines"):
+            speed = measure_engines(machine, listed, runs=runs, pysim_cycles=pysim_cycles)
+    except ToolMissingError as missing:
+        raise InputError(f"verilator: {missing}; only pysim works here") from None
+    if as_json:
+        click.echo(json.dumps({"cards": machine.cards, "scene": scene, **asdict(speed)}, indent=1))
+        return
+    built = ("found" if speed.build_seconds is None
+             else f"built in {speed.build_seconds:.0f} s")
+    click.echo(f"machine   {machine.cards}, {machine.width}x{machine.height}, "
+               f"{machine.fraction_bits} fraction bits; model {built}")
+    click.echo(f"frame     {scene}: {listed.triangles:,} triangles, {speed.cycles:,} cycles")
+    click.echo(f"verilator {speed.verilator:12,.0f} cycles a second, whole frame, median of {runs}")
+    click.echo(f"bare loop {speed.bare_loop:12,.0f} cycles a second; ratio "
+               f"{speed.verilator / speed.bare_loop:.2f}")
+    click.echo(f"pysim     {speed.pysim:12,.0f} cycles a second; verilator is "
+               f"{speed.verilator / speed.pysim:,.0f} times as fast")

@@ -1,0 +1,63 @@
+"""``cardcage render``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..engines.choose_engine import AUTO, ENGINES
+from ..render import DEFAULT_SCENE, RenderOptions, prepare_render
+from .command_group import EXIT_DIFFERENT, warn
+from .command_options import machine_options
+from .progress import progress_bar
+from .tables.render_summary import render_summary
+
+#: Some minutes of simulation: say so before.
+PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
+
+
+@click.command(name="render")
+@click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
+@machine_options
+@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+              help="The simulator.")
+@click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
+              help="Start with random words in every memory, as after power-on.")
+@click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE.vcd",
+              help="Also record every signal.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
+              show_default=True, metavar="DIR", help="Folder of the report.")
+@click.pass_obj
+def render_command(command_line: str, scene: str, waveform: Path | None, out: Path,
+                   **options: Any) -> None:
+    """Draw SCENE on a simulated machine and compare every pixel with the golden model.
+
+    SCENE is a mesh (.obj .stl .ply .glb .gltf), a saved display list (.npz), a hard case
+    (hard:NAME) or a built-in scene, with arguments if need be.  The report goes to DIR: open
+    report.html.
+
+    \b
+    Examples:
+      cardcage render
+      cardcage render mesh.stl --size 96x96 --out mesh-report
+      cardcage render teapot --cards '4x(PMM)' --size 64x64
+      cardcage render sphereflake:depth=1 --fraction-bits 6
+      cardcage render random:n=40,size=12,seed=7 --preset tiny --waveform tiny.vcd
+      cardcage render cardcage-out/display_list.npz --cards 'PM PMMM'
+    """
+    job = prepare_render(scene, RenderOptions(**options), command_line)
+    for warning in job.warnings:
+        warn(warning)
+    expected = job.expected_cycles()
+    if expected > PATIENCE_CYCLES.get(job.options.engine, PATIENCE_CYCLES["verilator"]):
+        warn(f"about {expected:,} cycles to simulate: this takes long; a smaller --size is quicker")
+    with progress_bar(expected) as progress:
+        rendering = job.run(out, waveform, progress)
+    for warning in rendering.warnings[len(job.warnings):]:
+        warn(warning)
+    click.echo(render_summary(rendering))
+    if not rendering.comparison.equal:
+        click.get_current_context().exit(EXIT_DIFFERENT)
+

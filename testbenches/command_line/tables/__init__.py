@@ -1,0 +1,1 @@
+"""What commands print: tables on a terminal, aligned lines and JSON elsewhere."""

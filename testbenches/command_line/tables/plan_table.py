@@ -1,0 +1,69 @@
+"""A plan for people: a table on a terminal, aligned lines elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from rich.console import Console
+from rich.table import Table
+
+from ....golden.planning.machine_plan import triangle_bits
+from .scene_plan import CYCLE_ACCURACY, ScenePlan
+
+_COLUMNS = ("", "plan", "full", "saves", "because")
+
+
+def plan_text(planned: ScenePlan) -> str:
+    """Plain lines, the columns aligned."""
+    rows = [_COLUMNS, *_rows(planned)]
+    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    lines = ["  ".join([row[0].ljust(widths[0]),
+                        *(row[column].rjust(widths[column]) for column in (1, 2, 3)),
+                        row[4]]).rstrip() for row in rows]
+    return "\n".join([_title(planned), *lines, *_summary(planned)])
+
+
+def plan_table(planned: ScenePlan) -> None:
+    """The same as a table on the terminal."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for place, column in enumerate(_COLUMNS):
+        table.add_column(column, style="bold" if place == 0 else None,
+                         justify="right" if 0 < place < 4 else "left")
+    for row in _rows(planned):
+        table.add_row(*row)
+    console = Console()
+    console.print(_title(planned), highlight=False)
+    console.print(table)
+    for line in _summary(planned):
+        console.print(line, highlight=False, soft_wrap=True)
+
+
+def _title(planned: ScenePlan) -> str:
+    machine = planned.plan.configuration
+    return (f"{planned.scene.name}: {planned.plan.needs.triangles:,} triangles at "
+            f"{machine.width}x{machine.height}; full is a machine for every triangle on that "
+            "screen")
+
+
+def _rows(planned: ScenePlan) -> list[tuple[str, str, str, str, str]]:
+    return [(line.item, line.value, line.full, "" if line.saves is None else f"{line.saves:,}",
+             line.reason) for line in planned.plan.lines]
+
+
+def _summary(planned: ScenePlan) -> list[str]:
+    plan, machine = planned.plan, planned.plan.configuration
+    chosen = (f"chosen for {planned.budget:,}" if planned.budget is not None else
+              "as given")
+    lines = [
+        f"each triangle broadcast: {triangle_bits(machine):,} bits instead of "
+        f"{triangle_bits(plan.full):,} (saves counts these, each line by itself)",
+        f"cards: {machine.cards}, {chosen}; a frame takes about {planned.estimate.total:,} cycles "
+        f"(estimated, within {100 * CYCLE_ACCURACY:.0f} % of those simulated in the tests)",
+    ]
+    if planned.cells is not None:
+        counted, full = map(asdict, planned.cells)
+        lines.append("cells of a processing element: " + ", ".join(
+            f"{counted[name]:,} instead of {full[name]:,} {text}" for name, text in (
+                ("flip_flops", "flip-flops"), ("gates", "gates"),
+                ("multipliers", "multiplier bits"), ("memory", "bits of FIFO"))))
+    return [*lines, f"draw it: {planned.command}"]

@@ -1,0 +1,59 @@
+"""What ``cardcage render`` says at the end."""
+
+from __future__ import annotations
+
+from ...frames.compare import FirstDifference
+from ...frames.rendering import Rendering
+
+
+def render_summary(rendering: Rendering) -> str:
+    """The verdict and the main figures, in a few lines."""
+    simulation, configuration = rendering.simulation, rendering.configuration
+    interlace = configuration.interlace
+    lines = [
+        _verdict(rendering),
+        _line("scene", f"{rendering.scene.name}: {rendering.scene.display_list.triangles:,} "
+              f"triangles, {rendering.fragments:,} fragments at "
+              f"{interlace.width}x{interlace.height}"),
+        _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
+        _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw; "
+              f"{simulation.cycles:,} simulated by {simulation.engine} in "
+              f"{simulation.seconds:.1f} s"
+              + (f", after {simulation.build_seconds:.0f} s of compiling the model"
+                 if simulation.build_seconds else "")),
+        _line("efficiency", f"{100 * rendering.efficiency:.1f} % (fragments per cycle and "
+              "processing element)"),
+    ]
+    if rendering.comparison.first_difference is not None:
+        lines.insert(1, _line("first", _first(rendering.comparison.first_difference)))
+    if rendering.report is not None:
+        lines.append(_line("report", str(rendering.report)))
+    return "\n".join(lines)
+
+
+def _line(label: str, text: str) -> str:
+    return f"  {label:11} {text}"
+
+
+def _verdict(rendering: Rendering) -> str:
+    comparison = rendering.comparison
+    if comparison.equal:
+        return (f"equal: {comparison.pixels_compared:,} colours and "
+                f"{comparison.depths_compared:,} depths compared, 0 different")
+    return (f"DIFFERENT: {comparison.pixels_different:,} of {comparison.pixels_compared:,} "
+            f"colours, {comparison.depths_different:,} of {comparison.depths_compared:,} depths")
+
+
+def _precision(rendering: Rendering) -> str:
+    comparison, bits = rendering.comparison, rendering.configuration.fraction_bits
+    if bits >= comparison.exact_fraction_bits:
+        return f"{bits} fraction bits (exact)"
+    return (f"{bits} fraction bits (exact from {comparison.exact_fraction_bits}; now at most "
+            f"{comparison.depth_max_error:,} LSB of depth and {comparison.color_max_error} of "
+            "colour off)")
+
+
+def _first(difference: FirstDifference) -> str:
+    expected, got = difference.expected, difference.got
+    return (f"pixel {difference.pixel}: expected colour {expected.color} depth {expected.depth}, "
+            f"got {got.color} depth {got.depth}; {len(difference.fragments)} fragments fell on it")

@@ -1,0 +1,1 @@
+"""How the machine is simulated: engines by name, and what they record."""

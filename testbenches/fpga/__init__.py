@@ -1,0 +1,1 @@
+"""Boards on a Lattice ECP5: synthesis, place and route, area and clock rate."""

@@ -1,0 +1,70 @@
+"""The boards and parts whose area and clock rate are measured, each as one component."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from amaranth.lib import wiring
+
+from ...golden.planning.machines import on_screen_machine
+from ...golden.specification.configuration import MachineConfiguration
+from ...hdl.memory_unit.memory_unit import MemoryUnit
+from ..machine_options import SETUPS
+from ..speed.cases import DEPTH_BITS, SUB_BITS
+from .domain import Domain
+from .outside_ram import OutsideRam
+from .place_and_route import LogicMapping, Part
+
+
+def domain(configuration: MachineConfiguration) -> wiring.Component:
+    """A processing element and its memory units, their RAM outside."""
+    boards = Domain(configuration=configuration)
+    storages = [storage for unit in boards.units for storage in unit.memory.storages]
+    return OutsideRam(component=boards, storages=storages)
+
+
+def memory_unit(configuration: MachineConfiguration) -> wiring.Component:
+    """A memory unit, its RAM outside."""
+    unit = MemoryUnit(configuration=configuration)
+    return OutsideRam(component=unit, storages=unit.memory.storages)
+
+
+@dataclass(frozen=True)
+class Board:
+    """A row of the table.
+
+    ``title``    what the table calls it
+    ``name``     of its Verilog module
+    ``build``    as of ``Part``
+    ``changes``  fields of the configuration in which it differs from the rest
+    ``mapping``  as of ``Part``
+    """
+
+    title: str
+    name: str
+    build: Callable[[MachineConfiguration], wiring.Component] | None = None
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    mapping: LogicMapping = "area"
+
+    def part(self, cards: str, width: int, height: int) -> Part:
+        """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
+        machine = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS, "shading": "flat",
+                   "memory_ports": 2} | dict(self.changes)
+        return Part(on_screen_machine(cards=cards, width=width, height=height, **machine),
+                    self.name, self.build, self.mapping)
+
+
+#: By the names that people choose them by.
+BOARDS = {
+    "element": Board("processing element, flat", "processing_element"),
+    "domain": Board("processing element, memory units, flat", "domain", domain),
+    "domain-gouraud": Board("processing element, memory units, Gouraud", "domain", domain,
+                            {"shading": "gouraud"}),
+    "unit-1-port": Board("memory unit, 1 port", "memory_unit", memory_unit, {"memory_ports": 1}),
+    "unit-2-ports": Board("memory unit, 2 ports", "memory_unit", memory_unit),
+    "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
+                        mapping="plain"),
+    "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
+}

@@ -1,0 +1,82 @@
+"""One frame as a job for an engine: the commands, and how much comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...golden.planning.scene_needs import fitted
+from ...golden.reference import triangle_words
+from ...golden.reference.triangle_setup import in_finer_words, prepare
+from ...golden.specification import commands
+from ...golden.specification.card_order import domains
+from ...golden.specification.commands import Opcode
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ..engines.engine import Job
+
+
+def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
+                   fraction_bits: int | None = None) -> list[int]:
+    """Frame start, triangles, frame end.
+
+    Where the machine has no set-up of its own the host does it here, at the resolution that the
+    machine reports.  With ``fraction_bits``, fewer than the machine's, the host does it with planes
+    rounded to these: the machine then draws the picture of one that has no more, value for value
+    and clock for clock, if its words have the integer bits for the greater error.  Raises
+    ``InputError`` for a list that is too wide for the machine.
+    """
+    fitting = fitted(configuration, display_list)
+    start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
+    if configuration.setup == "hardware" and fraction_bits is None:
+        return [start, *triangle_words.triangles(configuration, fitting), end]
+    interlace = configuration.interlace
+    own = configuration.fraction_bits
+    prepared = prepare(fitting,
+                       fraction_bits=own if fraction_bits is None else fraction_bits,
+                       shading=configuration.shading,
+                       x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    prepared = in_finer_words(prepared, own)
+    return [start, *triangle_words.prepared_triangles(configuration, prepared), end]
+
+
+
+def frame_job(
+    configuration: MachineConfiguration,
+    display_list: DisplayList,
+    *,
+    memory_seed: int | None = None,
+    stall_seed: int | None = None,
+    waveform: Path | None = None,
+    fraction_bits: int | None = None,
+) -> Job:
+    """Everything an engine needs to run one frame with depths and counters read back."""
+    words = [*frame_commands(configuration, display_list, fraction_bits),
+             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+    interlace, elements = configuration.interlace, configuration.processing_elements
+    boot = elements + 3  # domains, units, picture, booted
+    depths = sum(units for _, units in domains(configuration.cards)) * interlace.words
+    return Job(
+        configuration=configuration,
+        commands=words,
+        responses=boot + 2 + depths + 2 * elements,
+        memory_seed=memory_seed,
+        stall_seed=stall_seed,
+        waveform=waveform,
+        maximum_cycles=cycle_bound(configuration, words),
+    )
+
+
+
+def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
+    """More cycles than any frame can take: beyond, the machine hangs.
+
+    Every triangle waits for three divisions and covers the screen, every pixel costs a scan slot,
+    a read and a write; then the stalls of the most patient host, and some scans.
+    """
+    pixels = configuration.width * configuration.height
+    divisions = 3 * configuration.setup_interval
+    return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)
+            + 30 * configuration.interlace.units * configuration.interlace.words
+            + 4 * configuration.cycles_per_scan)
+

@@ -1,0 +1,47 @@
+"""A finished rendering: what was asked, what the machine did, and the verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...golden.scene_display_list import SceneDisplayList
+from ...golden.specification.configuration import MachineConfiguration
+from .compare import Comparison
+from .responses import Simulation
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """One frame of one scene on one machine, judged.
+
+    ``command_line``  what the user typed, if anything
+    ``warnings``      one line each
+    ``wall_seconds``  from the scene's name to the verdict
+    ``report``        where ``report.html`` is, if it was written
+    """
+
+    scene: SceneDisplayList
+    configuration: MachineConfiguration
+    simulation: Simulation
+    comparison: Comparison
+    command_line: str | None
+    warnings: tuple[str, ...]
+    wall_seconds: float
+    report: Path | None = None
+
+    @property
+    def fragments(self) -> int:
+        """Fragments that the processing elements counted."""
+        return sum(work.fragments for work in self.simulation.work)
+
+    @property
+    def efficiency(self) -> float:
+        """Fragments per cycle and processing element while the frame was drawn."""
+        cycles = self.configuration.processing_elements * self.simulation.draw_cycles
+        return self.fragments / cycles if cycles else 0.0
+
+    @property
+    def cycles_per_second(self) -> float:
+        """Simulated cycles per second of wall time."""
+        return self.simulation.cycles / max(self.simulation.seconds, 1e-9)

@@ -1,0 +1,1 @@
+"""Speed against error of a scene's machine: the study, its table, plot and report."""

@@ -1,0 +1,1 @@
+"""Reports of a frame: pages, charts, pictures."""

@@ -1,0 +1,130 @@
+"""The figures of a rendering, as plain numbers, lists and words: ``report.json``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
+from ..frames.compare import FirstDifference, PixelValue
+from ..frames.rendering import Rendering
+
+
+def report_facts(rendering: Rendering) -> dict[str, Any]:
+    """Everything the report tells but the pictures.
+
+    The names are part of the command line's contract: add to them, do not change them.
+    """
+    simulation, comparison = rendering.simulation, rendering.comparison
+    return {
+        "equal": comparison.equal,
+        "scene": rendering.scene.name,
+        "command_line": rendering.command_line,
+        "pixels": {
+            "compared": comparison.pixels_compared,
+            "different": comparison.pixels_different,
+            "orphans": int(comparison.color_orphans.sum()),
+        },
+        "depth": {
+            "compared": comparison.depths_compared,
+            "different": comparison.depths_different,
+            "orphans": int(comparison.depth_orphans.sum()),
+            "max_error_lsb": comparison.depth_max_error,
+        },
+        "color": {"max_error": comparison.color_max_error},
+        "machine": _machine(rendering),
+        "triangles": rendering.scene.display_list.triangles,
+        "fragments": rendering.fragments,
+        "cycles": {
+            "boot": simulation.boot_cycles,
+            "draw": simulation.draw_cycles,
+            "total": simulation.cycles,
+        },
+        "efficiency": rendering.efficiency,
+        "repeated_scans": simulation.repeated_scans,
+        "per_pe": [
+            {"first_unit": work.first_unit, "units": work.units, "fragments": work.fragments,
+             "busy": work.busy_cycles}
+            for work in simulation.work
+        ],
+        "activity": _activity(simulation.activity),
+        "engine": simulation.engine,
+        "simulated_cycles_per_second": rendering.cycles_per_second,
+        "build_seconds": simulation.build_seconds,
+        "run_seconds": simulation.seconds,
+        "wall_seconds": rendering.wall_seconds,
+        "warnings": list(rendering.warnings),
+        "first_difference": _first_difference(comparison.first_difference),
+    }
+
+
+def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
+    """Clocks of each kind: of every processing element, and of all of them bucket by bucket."""
+    if record is None:
+        return None
+    timeline = record.counts.sum(axis=1)
+    return {
+        "clocks": record.clocks,
+        "shares": record.shares(),
+        "per_pe": [dict(zip((kind.name for kind in ACTIVITY_KINDS), counts, strict=True))
+                   for counts in record.by_element.tolist()],
+        "bucket_clocks": record.bucket_clocks,
+        "timeline": {kind.name: timeline[:, kind.activity].tolist() for kind in ACTIVITY_KINDS},
+    }
+
+
+def _machine(rendering: Rendering) -> dict[str, Any]:
+    configuration = rendering.configuration
+    interlace = configuration.interlace
+    return {
+        "cards": configuration.cards,
+        "memory_units": configuration.units,
+        "total_units": rendering.simulation.total,
+        "owned_units": rendering.simulation.owned,
+        "processing_elements": configuration.processing_elements,
+        "width": configuration.width,
+        "height": configuration.height,
+        "picture_width": interlace.width,
+        "picture_height": interlace.height,
+        "words": configuration.words,
+        "sub_bits": configuration.sub_bits,
+        "depth_bits": configuration.depth_bits,
+        "fraction_bits": configuration.fraction_bits,
+        "exact_fraction_bits": rendering.comparison.exact_fraction_bits,
+        "shading": configuration.shading,
+        "coordinate_bits": configuration.coordinate_bits,
+        "edge_column_bits": configuration.edge_column_bits,
+        "edge_remainder_bits": configuration.edge_remainder_bits,
+        "edge_fraction_bits": configuration.edge_fraction_bits,
+        "depth_plane_bits": configuration.depth_plane_bits,
+        "fifo_depth": configuration.fifo_depth,
+        "memory_ports": configuration.memory_ports,
+        "block": configuration.block,
+        "skew": configuration.skew,
+        "scan_reads_per_line": interlace.scan_reads,
+        "tag_bits": configuration.tag_bits,
+        "setup": configuration.setup,
+        "setup_interval": configuration.setup_interval,
+        "clocks_per_pixel": configuration.clocks_per_pixel,
+        "cycles_per_scan": configuration.cycles_per_scan,
+    }
+
+
+def _first_difference(difference: FirstDifference | None) -> dict[str, Any] | None:
+    if difference is None:
+        return None
+    fragments = difference.fragments
+    return {
+        "pixel": list(difference.pixel),
+        "machine_pixel": list(difference.machine_pixel),
+        "expected": {**_value(difference.expected), "primitive": difference.winner},
+        "got": _value(difference.got),
+        "fragments": [
+            {"primitive": int(primitive), "depth": int(depth), "color": color.tolist()}
+            for primitive, depth, color in zip(fragments.primitive, fragments.depth,
+                                               fragments.color, strict=True)
+        ],
+    }
+
+
+def _value(value: PixelValue) -> dict[str, Any]:
+    return {"color": list(value.color), "depth": value.depth}

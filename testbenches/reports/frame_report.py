@@ -1,0 +1,120 @@
+"""Writes the report of a rendering: one page, one JSON file, pictures, the display list."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...golden.reference.exact import depth_complexity
+from ...golden.specification.card_order import MEMORY_UNIT, domains
+from ..engines.activity_record import ACTIVITY_KINDS
+from ..frames.rendering import Rendering
+from .activity_chart import activity_chart, timeline_chart
+from .frame_facts import report_facts
+from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
+from .page import page_environment
+from .work_chart import work_chart
+
+#: About as wide as a picture is on the page.
+PAGE_PICTURE_PIXELS = 320
+
+#: Everything that ``write_report`` writes.
+REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "difference.png",
+                "display_list.npz")
+
+
+@dataclass(frozen=True)
+class CardGroup:
+    """Neighbouring cards in the drawing of the cage: a processing element and its units.
+
+    ``element`` is None for units that belong to nobody.
+    """
+
+    element: int | None
+    units: range
+
+    @property
+    def caption(self) -> str:
+        if self.element is None:
+            return "owned by nobody"
+        if not self.units:
+            return "owns none"
+        if len(self.units) == 1:
+            return f"owns {self.units[0]}"
+        return f"owns {self.units[0]} to {self.units[-1]}"
+
+
+def write_report(rendering: Rendering, folder: Path) -> None:
+    """Write ``REPORT_FILES`` to ``folder``, which exists."""
+    facts = report_facts(rendering)
+    (folder / "report.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    (folder / "rtl.png").write_bytes(png(rendering.simulation.video))
+    (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
+    (folder / "difference.png").write_bytes(png(color_difference(rendering)))
+    rendering.scene.display_list.save(folder / "display_list.npz")
+    (folder / "report.html").write_text(report_page(rendering, facts), encoding="utf-8")
+
+
+def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
+    """The page, complete in itself: pictures and chart are inside it."""
+    environment = page_environment()
+    environment.filters["hexadecimal"] = _hexadecimal
+    machine_depth, golden_depth = depth_pictures(rendering)
+    # A picture larger than its place loses pixels there: a lone red one must not be among them.
+    reach = max(rendering.simulation.video.shape) // PAGE_PICTURE_PIXELS
+    return environment.get_template("report.html").render(
+        facts,
+        rows=[
+            ("Colour", "from the video pins", data_uri(rendering.simulation.video),
+             data_uri(rendering.comparison.expected),
+             data_uri(color_difference(rendering, reach))),
+            ("Depth", "read back, near is light", data_uri(machine_depth), data_uri(golden_depth),
+             data_uri(depth_difference(rendering, reach))),
+        ],
+        chart=work_chart(rendering.simulation.work),
+        activity_charts=_activity_charts(rendering),
+        activity_kinds=ACTIVITY_KINDS,
+        groups=card_groups(rendering.configuration.cards),
+        display_list=_display_list_facts(rendering),
+        exact=_is_exact(rendering),
+    )
+
+
+def _activity_charts(rendering: Rendering) -> list[str]:
+    record = rendering.simulation.activity
+    return [] if record is None else [activity_chart(record), timeline_chart(record)]
+
+
+def card_groups(cards: str) -> list[CardGroup]:
+    """The cage from left to right."""
+    orphans = len(cards) - len(cards.lstrip(MEMORY_UNIT))
+    groups = [CardGroup(None, range(orphans))] if orphans else []
+    return groups + [CardGroup(number, range(first, first + count))
+                     for number, (first, count) in enumerate(domains(cards))]
+
+
+def _is_exact(rendering: Rendering) -> bool:
+    return rendering.configuration.fraction_bits >= rendering.comparison.exact_fraction_bits
+
+
+def _display_list_facts(rendering: Rendering) -> dict[str, Any]:
+    listed = rendering.scene.display_list
+    interlace = rendering.configuration.interlace
+    complexity = depth_complexity(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    covered = int((complexity > 0).sum())
+    return {
+        "coordinate_bits": listed.coordinate_bits,
+        "sub_bits": listed.sub_bits,
+        "colors": "one colour a triangle" if listed.flat else "a colour at each vertex",
+        "background": listed.background,
+        "covered": covered,
+        "pixels": complexity.size,
+        "mean_complexity": complexity.sum() / covered if covered else 0.0,
+        "greatest_complexity": int(complexity.max(initial=0)),
+    }
+
+
+def _hexadecimal(color: tuple[int, int, int]) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*color)

@@ -1,0 +1,1 @@
+"""Clocks of cases on machines, measured, predicted and beside the peers."""

@@ -1,0 +1,214 @@
+"""Measures cases on a simulated machine, and compares each picture with the golden one.
+
+All cases of a machine go through one simulation, a frame each::
+
+    FRAME_START  READ_COUNTERS  n triangles  READ_COUNTERS  2n triangles  READ_COUNTERS  FRAME_END
+
+The machine takes ``READ_COUNTERS`` only when every processing element has
+finished, its last write included; so T(n) is the time from the clock in which it
+takes the first of n triangles to the clock in which it takes the counters'
+command, a few clocks after the last write.  These few are in T(n) and T(2n) alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...golden.reference.exact import depth_complexity
+from ...golden.specification import commands
+from ...golden.specification.card_order import domains
+from ...golden.specification.commands import Opcode, ResponseKind
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.errors import InputError
+from ..engines.activity_record import ActivityRecord
+from ..engines.engine import Engine, EngineRun, Job, Progress
+from ..engines.verilator_tool import ToolMissingError
+from ..frames.compare import compare
+from ..frames.frame_job import cycle_bound, frame_commands
+from ..frames.responses import MachineError, Simulation, Work, depth_image
+from .cases import CaseLists, Order
+
+_READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
+_READ_DEPTH = commands.command(Opcode.READ_DEPTH)
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A case on a machine; the picture was equal to the golden one.
+
+    ``triangles``          n, of which T(n) and T(2n) were measured
+    ``fragments``          of n triangles
+    ``cycles_once``        T(n): first of n triangles taken … all elements finished
+    ``cycles_twice``       T(2n)
+    ``element_fragments``  of 2n triangles, per processing element
+    ``seconds``            its share of the simulation, compiling not counted
+    ``activity``           what the processing elements did in T(2n); None where nothing tells
+    """
+
+    case: str
+    order: Order
+    triangles: int
+    fragments: int
+    cycles_once: int
+    cycles_twice: int
+    element_fragments: tuple[int, ...]
+    seconds: float
+    activity: ActivityRecord | None = None
+
+    @property
+    def sustained_cycles(self) -> int:
+        """T(2n) - T(n): n triangles while the machine is busy with others before and after."""
+        return self.cycles_twice - self.cycles_once
+
+    @property
+    def cycles_per_triangle(self) -> float:
+        return self.sustained_cycles / self.triangles
+
+    @property
+    def cycles_per_fragment(self) -> float:
+        return self.sustained_cycles / self.fragments
+
+    @property
+    def fragments_per_clock(self) -> float:
+        return self.fragments / self.sustained_cycles
+
+    @property
+    def utilisation(self) -> float:
+        """Fragments per clock and processing element."""
+        return self.fragments_per_clock / len(self.element_fragments)
+
+    @property
+    def latency(self) -> int:
+        """What T(n) has besides n triangles at the sustained rate: to fill and to drain."""
+        return self.cycles_once - self.sustained_cycles
+
+
+class DifferentError(MachineError):
+    """A picture is not the golden one: there is no speed to speak of."""
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """Where the commands of a case's frame lie in its job."""
+
+    case: CaseLists
+    start: int
+    triangles_once: int
+    triangles_twice: int
+
+    @property
+    def first(self) -> tuple[int, int]:
+        """The first command of n and of 2n triangles."""
+        return self.start + 2, self.start + 3 + self.triangles_once
+
+    @property
+    def barriers(self) -> tuple[int, int]:
+        """The command that waits for them."""
+        once, twice = self.first
+        return once + self.triangles_once, twice + self.triangles_twice
+
+
+def measure(configuration: MachineConfiguration, cases: Sequence[CaseLists], engine: Engine,
+            progress: Progress | None = None) -> list[Measurement]:
+    """Draw every case, compare every pixel and every depth; what it took, in the same order.
+
+    Raises ``DifferentError`` where a picture or a number of fragments is not the golden one,
+    ``MachineError`` where the machine does not deliver, ``InputError`` where the engine cannot run.
+    """
+    job, frames = _job(configuration, cases)
+    try:
+        run = engine.run(job, progress)
+    except ToolMissingError as missing:
+        raise InputError(f"--engine {engine.name}: {missing}; or use --engine model") from None
+    except (TimeoutError, AssertionError) as error:
+        raise MachineError(f"the machine failed: {error}") from error
+    responses = _by_kind(run)
+    if len(faults := responses[ResponseKind.ERROR][0]):
+        raise MachineError(f"the machine reports fault {faults[0]}")
+    return [_measurement(configuration, frame, number, run, responses)
+            for number, frame in enumerate(frames)]
+
+
+def _job(configuration: MachineConfiguration,
+         cases: Sequence[CaseLists]) -> tuple[Job, list[_Frame]]:
+    words: list[int] = []
+    frames = []
+    for case in cases:
+        start, *once, end = frame_commands(configuration, case.once)
+        _, *twice, _ = frame_commands(configuration, case.twice)
+        frames.append(_Frame(case, len(words), len(once), len(twice)))
+        words += [start, _READ_COUNTERS, *once, _READ_COUNTERS, *twice, _READ_COUNTERS, end,
+                  _READ_DEPTH]
+    elements = configuration.processing_elements
+    depths = sum(units for _, units in domains(configuration.cards)) * configuration.interlace.words
+    return Job(
+        configuration=configuration,
+        commands=words,
+        responses=elements + 3 + len(cases) * (3 * 2 * elements + 2 + depths),
+        memory_seed=1,
+        maximum_cycles=len(cases) * cycle_bound(configuration, words),
+    ), frames
+
+
+#: Values and the cycles they came in, of the responses of one kind.
+_Responses = tuple[NDArray[np.int64], NDArray[np.int64]]
+
+
+def _by_kind(run: EngineRun) -> dict[ResponseKind, _Responses]:
+    found: dict[ResponseKind, list[tuple[int, int]]] = {kind: [] for kind in ResponseKind}
+    for kind, value, cycle in run.responses:
+        found[kind].append((value, cycle))
+    return {kind: (np.array([value for value, _ in pairs], np.int64),
+                   np.array([cycle for _, cycle in pairs], np.int64))
+            for kind, pairs in found.items()}
+
+
+def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int, run: EngineRun,
+                 responses: dict[ResponseKind, _Responses]) -> Measurement:
+    elements, case = configuration.processing_elements, frame.case
+    counts = responses[ResponseKind.FRAGMENTS][0].reshape(-1, 3, elements)[number]
+    busy = responses[ResponseKind.BUSY][0].reshape(-1, 3, elements)[number, -1]
+    depths = responses[ResponseKind.DEPTH][0]
+    interlace = configuration.interlace
+    shares = domains(configuration.cards)
+    words = depths.reshape(-1, sum(count for _, count in shares) * interlace.words)[number]
+    shown = responses[ResponseKind.FRAME_SHOWN][1][number]
+    simulation = Simulation(
+        video=next(scan.picture for scan in run.scans if scan.cycle > shown),
+        depth=depth_image(interlace, shares, words),
+        interlace=interlace,
+        work=[Work(first, units, int(fragments), int(cycles)) for (first, units), fragments, cycles
+              in zip(shares, counts[-1], busy, strict=True)],
+        owned=configuration.units,
+        total=configuration.units,
+        boot_cycles=int(responses[ResponseKind.BOOTED][0][0]),
+        draw_cycles=int(responses[ResponseKind.FRAME_DRAWN][0][number]),
+        repeated_scans=int(responses[ResponseKind.FRAME_SHOWN][0][number]),
+        scans=run.scans,
+        engine=run.engine,
+        cycles=run.cycles,
+        seconds=run.seconds,
+    )
+    shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
+    fragments = [int(depth_complexity(part, **shifts).sum()) for part in (case.once, case.twice)]
+    where = f"{case.name}, {case.order} order, on {configuration.cards}"
+    comparison = compare(configuration, case.frame, simulation)
+    if not comparison.equal:
+        raise DifferentError(
+            f"{where}: {comparison.pixels_different:,} colours and {comparison.depths_different:,} "
+            f"depths differ from the golden picture, first at {comparison.first_difference.pixel}")
+    drawn = np.diff(counts.sum(axis=1))
+    if drawn.tolist() != fragments:
+        raise DifferentError(f"{where}: {drawn.tolist()} fragments drawn, not {fragments}")
+    assert run.accepted is not None
+    once, twice = (int(run.accepted[barrier] - run.accepted[first])
+                   for first, barrier in zip(frame.first, frame.barriers, strict=True))
+    seconds = run.seconds / len(responses[ResponseKind.FRAME_DRAWN][0])
+    # One record until the first counters, the clear; then one for each of the two.
+    activity = run.activity[3 * number + 2] if run.activity else None
+    return Measurement(case.name, case.order, case.once.triangles, fragments[0], once, twice,
+                       tuple((counts[2] - counts[1]).tolist()), seconds, activity)

@@ -1,0 +1,129 @@
+"""Cases on machines: measured in simulation, predicted by the cycle model, beside the peers."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+from amaranth.hdl import Fragment
+
+from ...golden.cycles.cycle_model import CyclePrediction, SetupTiming, predict_cycles
+from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
+from ...golden.specification.configuration import MachineConfiguration
+from ...hdl.triangle_setup.outline import TriangleOutline
+from ...hdl.triangle_setup.triangle_setup import TriangleSetup
+from ..engines.engine import Engine
+from .cases import CaseLists, Order, case_lists
+from .machines import BenchMachine
+from .measure import Measurement, measure
+
+#: Cases that share a simulation: more save boots, and keep more depths at once.
+_TOGETHER = 4
+
+#: A list that one-port units bound takes the scan of so many rows at least, and two of the periods
+#: in which it is with each unit.
+_LEAST_ROWS = 16
+
+
+@dataclass(frozen=True)
+class BenchRow:
+    """One case on one machine.
+
+    ``measured``            None where only the model was asked
+    ``predicted``           T(2n) - T(n) by the cycle model
+    ``bound``               T(2n) - T(n) at the bounds of both: ``CyclePrediction.bounds``
+    ``binding``             which of those it is, of 2n
+    ``prediction_seconds``  what the cycle model took
+    """
+
+    machine: BenchMachine
+    case: str
+    order: Order
+    triangles: int
+    measured: Measurement | None
+    predicted: float
+    bound: float
+    binding: str
+    prediction_seconds: float
+
+    @property
+    def cycles(self) -> float:
+        """Sustained cycles for n triangles: measured where they were, else predicted."""
+        return self.predicted if self.measured is None else self.measured.sustained_cycles
+
+    @property
+    def prediction_error(self) -> float | None:
+        """Relative to the measured cycles."""
+        if self.measured is None:
+            return None
+        return self.predicted / self.measured.sustained_cycles - 1
+
+    @property
+    def key(self) -> str:
+        """What names this row in a baseline."""
+        return f"{self.machine.label}; {self.case}; {self.order}"
+
+
+def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order],
+          engine: Engine | None, step: Callable[[str], None] = lambda doing: None
+          ) -> Iterator[BenchRow]:
+    """Every case in every order on every machine; by the model alone where ``engine`` is None.
+
+    ``step`` is told what comes next.  Raises as ``bench_run.measure``.
+    """
+    shortest = [case_lists(case, order) for order in orders for case in cases]
+    for machine in machines:
+        for begin in range(0, len(shortest), _TOGETHER):
+            some = shortest[begin:begin + _TOGETHER]
+            names = ", ".join(case.name for case in some)
+            step(f"{machine.label}: {names}")
+            predicted = [_predicted(machine, case) for case in some]
+            measured: Sequence[Measurement | None] = [None] * len(some)
+            if engine is not None:
+                measured = measure(machine.configuration, [case for case, _ in predicted], engine)
+            for (_, row), measurement in zip(predicted, measured, strict=True):
+                yield replace(row, measured=measurement)
+
+
+def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order]) -> int:
+    """How often ``bench`` tells what comes next."""
+    return len(machines) * -(-len(cases) * len(orders) // _TOGETHER)
+
+
+@cache
+def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
+    """What the machine's own set-up says of itself."""
+    if configuration.setup == "host":
+        return None
+    unit = TriangleSetup(configuration=configuration)
+    Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
+    return SetupTiming(interval=unit.interval, latency=unit.preparation,
+                       waiting=TriangleOutline.queue_depth, inside=unit.depth)
+
+
+def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> int:
+    """How often the list must be repeated, so that every unit is scanned about as often."""
+    if prediction.binding != "busiest port":
+        return 1
+    rows = max(_LEAST_ROWS, 2 * len(scan_shares(configuration)))
+    return math.ceil(rows * clocks_per_row(configuration) / prediction.bound)
+
+
+def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, BenchRow]:
+    """``case``, longer where it must be, and what the model says of that."""
+    configuration = machine.configuration
+    setup = _setup_timing(configuration)
+    began = time.perf_counter()
+    once = predict_cycles(configuration, case.once, setup=setup)
+    if (times := _times(configuration, once)) > 1:
+        case = case_lists(case.name, case.order, times=times)
+        once = predict_cycles(configuration, case.once, setup=setup)
+    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
+    seconds = time.perf_counter() - began
+    return case, BenchRow(
+        machine, case.name, case.order, case.once.triangles, measured=None,
+        predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
+        binding=twice.binding, prediction_seconds=seconds)

@@ -1,0 +1,1 @@
+"""Experiments whose results stand in docs/; run from a clone, not installed."""

@@ -1,0 +1,1 @@
+"""What every command needs: whole output or none, caches, interruption, text tables."""

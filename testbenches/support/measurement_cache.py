@@ -1,0 +1,46 @@
+"""Measurements that take long, kept by the hash of everything they were made from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from .cache import cache_folder, cached, content_hash, sources_hash
+
+_NAME = "measurement.json"
+
+
+def recall(parts: Iterable[str]) -> dict[str, Any] | None:
+    """What was measured of ``parts`` before; None if it never was, or is lost."""
+    try:
+        text = (cache_folder() / content_hash(parts) / _NAME).read_text(encoding="utf-8")
+        return dict(json.loads(text))
+    except (OSError, ValueError):
+        return None
+
+
+def keep(parts: Iterable[str], measured: dict[str, Any]) -> None:
+    """Keep ``measured``, plain data, for ``recall``; an interrupted call leaves nothing."""
+
+    def write(folder: Path) -> None:
+        (folder / _NAME).write_text(json.dumps(measured), encoding="utf-8")
+
+    cached(content_hash(parts), write)
+
+
+def measured_once(parts: Iterable[str], measure: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The measurement of ``parts``, made now unless it was made before."""
+    parts = tuple(parts)
+    found = recall(parts)
+    if found is None:
+        found = measure()
+        keep(parts, found)
+    return found
+
+
+def package_hash() -> str:
+    """A name for this release of everything that measures and is measured."""
+    return content_hash([version("amaranth"), sources_hash("golden", "hdl", "testbenches")])

@@ -1,0 +1,224 @@
+"""The compiled model: the same machine as pysim's, clock for clock; built once and kept."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from cardcage.golden.planning.machines import configure
+from cardcage.golden.reference import exact
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.testbenches.command_line.cli import main
+from cardcage.testbenches.engines import choose_engine as engines
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
+from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.export import verilog
+from cardcage.testbenches.frames.compare import compare
+from cardcage.testbenches.frames.frame_job import frame_job
+from cardcage.testbenches.frames.simulation import simulate
+from cardcage.testbenches.support import cache as model_cache
+
+LIST = make_display_list("random:n=25,size=9,seed=3", width=16, height=12).display_list
+CONFIGURATION = configure(LIST, cards="PMPMMM", clocks_per_pixel=2)
+
+try:
+    find_verilator()
+except ToolMissingError as missing:
+    pytest.skip(f"simulator verilator: {missing}", allow_module_level=True)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory):
+    """An own cache, so that building is tested and no test finds an old model.  No ``python`` on
+    PATH works: whoever calls ``.venv/bin/cardcage`` by its name often has ``python3`` only.
+    """
+    folder, commands = tmp_path_factory.mktemp("cache"), tmp_path_factory.mktemp("commands")
+    (commands / "python").write_text("#!/bin/sh\nexit 127\n")
+    (commands / "python").chmod(0o755)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", str(commands), prepend=os.pathsep)
+        patch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(folder))
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def engine(cache):
+    engine = VerilatorEngine()
+    engine.build(CONFIGURATION)
+    return engine
+
+
+def test_clock_for_clock_the_same_as_pysim(engine):
+    job = frame_job(CONFIGURATION, LIST, memory_seed=4)
+    compiled, interpreted = engine.run(job), PysimEngine().run(job)
+    assert compiled.cycles == interpreted.cycles
+    assert compiled.responses == interpreted.responses  # kind, value and clock of each
+    np.testing.assert_array_equal(compiled.accepted, interpreted.accepted)
+    assert len(compiled.accepted) == len(job.commands)
+    assert [scan.cycle for scan in compiled.scans] == [scan.cycle for scan in interpreted.scans]
+    for one, other in zip(compiled.scans[1:], interpreted.scans[1:], strict=True):
+        np.testing.assert_array_equal(one.picture, other.picture)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_equal_to_golden_whatever_the_memory_and_the_stalls(engine, seed):
+    simulation = simulate(CONFIGURATION, LIST, engine, memory_seed=seed, stall_seed=seed)
+    picture = exact.draw(LIST)
+    np.testing.assert_array_equal(simulation.video, picture.color)
+    np.testing.assert_array_equal(simulation.depth, picture.depth)
+    [*_, (_, _, last)] = engine.run(frame_job(CONFIGURATION, LIST, stall_seed=seed)).responses
+    [*_, (_, _, unhurried)] = engine.run(frame_job(CONFIGURATION, LIST)).responses
+    assert last > unhurried, "the host paused"
+
+
+def test_memories_are_random_at_power_on():
+    """Seen in a machine that initialises no colour, and shows every word, whatever its tag."""
+    text = verilog.machine_verilog(CONFIGURATION)
+    text, count = re.subn(r"(write_enable\[[12]\])(\) words\S+:(28|56)\])",
+                          r"\1 && write_data[\3 +: 4] != 0\2", text)
+    text, also = re.subn(r"(assign current\[[12]\]) = [^;]*;", r"\1 = 1'h1;", text)
+    assert (count, also) == (2, 2)
+    engine = VerilatorEngine(verilog=text)
+    first, second, zero = (simulate(CONFIGURATION, LIST, engine, memory_seed=seed).video
+                           for seed in (1, 2, None))
+    drawn = exact.depth_complexity(LIST) > 0
+    color = exact.draw(LIST).color
+    assert not zero[~drawn].any()
+    for video in (first, second, zero):
+        np.testing.assert_array_equal(video[drawn], color[drawn])
+    assert (first[~drawn] != second[~drawn]).any() and first[~drawn].any()
+
+
+def test_a_model_is_built_once(engine, cache):
+    reports = []
+    run = engine.run(frame_job(CONFIGURATION, LIST), lambda *now: reports.append(now))
+    assert run.build_seconds == 0
+    assert not [now for now in reports if now == (0, 0)]
+    program, fresh = engine.build(CONFIGURATION)
+    assert not fresh and program.parent.parent == cache
+    assert not [path for path in cache.iterdir() if path.name.startswith(".")]
+
+
+def patched(right, wrong):
+    """An engine for the machine's Verilog with one thing changed, wherever a module has it."""
+    text = verilog.machine_verilog(CONFIGURATION)
+    assert right in text
+    return VerilatorEngine(verilog=text.replace(right, wrong))
+
+
+def test_a_netlist_whose_units_do_not_answer_is_found_out():
+    with pytest.raises(TimeoutError, match="responses"):  # what nobody owns is not sent
+        patched("[27:0] <= write_data[27:0];", "[27:0] <= 28'd0;").run(
+            frame_job(CONFIGURATION, LIST))
+
+
+def test_a_wrong_pixel_is_named():
+    """The engines disagree on purpose: the comparison says so and names the first pixel."""
+    simulation = simulate(CONFIGURATION, LIST, patched(" < nearest;", " > nearest;"))
+    comparison = compare(CONFIGURATION, LIST, simulation)
+    assert not comparison.equal
+    picture = exact.draw(LIST)
+    wrong = (simulation.video != picture.color).any(axis=-1) | (simulation.depth != picture.depth)
+    y, x = np.argwhere(wrong)[0]
+    assert tuple(comparison.first_difference.pixel) == (x, y)
+    assert comparison.first_difference.fragments
+
+
+BUILD = """
+import time
+from cardcage.testbenches.support.cache import cached
+def build(folder):
+    time.sleep(0.5)
+    (folder / "machine").write_text("whole")
+path, _ = cached("key", build)
+print((path / "machine").read_text())
+"""
+
+
+def test_two_processes_at_once_do_not_harm_the_cache(tmp_path):
+    environment = os.environ | {model_cache.ENVIRONMENT_VARIABLE: str(tmp_path)}
+    running = [subprocess.Popen([sys.executable, "-c", BUILD], env=environment, text=True,
+                                stdout=subprocess.PIPE) for _ in range(4)]
+    assert [process.communicate(timeout=60)[0] for process in running] == ["whole\n"] * 4
+    assert [path.name for path in tmp_path.iterdir()] == ["key"]
+
+
+def test_an_interrupted_build_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path))
+
+    def interrupted(folder):
+        (folder / "half").touch()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        model_cache.cached("key", interrupted)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cache_that_cannot_be_written_is_replaced(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()  # a folder inside a file: nobody may, not even the superuser
+    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path / "file" / "cache"))
+    path, fresh = model_cache.cached("key", lambda folder: (folder / "machine").touch())
+    assert fresh and (path / "machine").exists()
+    assert tmp_path not in path.parents
+
+
+def test_the_cache_command(tmp_path, monkeypatch):
+    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
+    model_cache.cached("key", lambda folder: (folder / "model").write_bytes(bytes(3_000_000)))
+    assert "3.0 MB in" in CliRunner().invoke(main, ["cache"]).output
+    assert "3.0 MB removed" in CliRunner().invoke(main, ["cache", "--clear"]).output
+    assert not (tmp_path / "cache").exists()
+
+
+def render(folder, *arguments):
+    return CliRunner().invoke(main, ["render", "random:n=5,size=6", "--size", "8x8",
+                                     "--cards", "PM", "--out", str(folder), *arguments])
+
+
+def test_without_a_compiler_auto_says_so_and_takes_pysim(tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    result = render(tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert "no C++ compiler: no-such-compiler is not on PATH; simulated with pysim" in result.stderr
+    assert json.loads(Path(tmp_path, "out/report.json").read_text())["engine"] == "pysim"
+
+
+def test_without_a_compiler_verilator_by_name_is_an_error(tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    result = render(tmp_path / "out", "--engine", "verilator")
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1 and "no-such-compiler" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_compiler_that_fails_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
+    monkeypatch.setenv("CXX", "false")  # there, and fails
+    result = render(tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert "Verilator cannot build the model" in result.stderr
+    result = render(tmp_path / "named", "--engine", "verilator")
+    assert result.exit_code == 2 and result.stderr.count("\n") == 1
+
+
+def test_the_report_tells_the_engine_and_its_times(engine, tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
+    LIST.save(tmp_path / "list.npz")
+    for _ in range(2):  # the second time the model is there
+        result = CliRunner().invoke(main, ["render", str(tmp_path / "list.npz"), "--cards",
+                                           "PMPMMM", "--out", str(tmp_path / "out")])
+        assert result.exit_code == 0, result.output
+    facts = json.loads((tmp_path / "out/report.json").read_text())
+    assert facts["equal"] and facts["engine"] == "verilator"
+    assert facts["cycles"]["total"] > 1000 and facts["simulated_cycles_per_second"] > 0
+    assert facts["build_seconds"] == 0 and facts["run_seconds"] > 0
