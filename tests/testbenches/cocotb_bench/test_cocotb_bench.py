@@ -185,12 +185,12 @@ def test_a_list_for_another_machine_is_refused(tmp_path):
     LISTED.save(listed)
     done = CliRunner().invoke(main, ["check-verilog", str(tmp_path / "machine.v"), str(listed)])
     assert done.exit_code == 2
-    assert done.output == ("Error: display list: width 8, the machine is built for 16: export a "
-                           "machine for this list\n")
+    assert done.output == ("cardcage: error: display list: width 8, the machine is built for 16: "
+                           "export a machine for this list\n")
 
 
 def test_the_document_names_real_options():
     text = DOCUMENT.read_text(encoding="utf-8")
     options = set(re.findall(r"(?<![\w-])--[a-z-]+", text.partition("## Options")[2]))
-    assert options == {option for parameter in check_verilog_command.params for option in parameter.opts
-                       if option.startswith("--")}
+    assert options == {option for parameter in check_verilog_command.params
+                       for option in parameter.opts if option.startswith("--")}
