@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
+from ..golden.organisations.organisation_of import organisation_of
 from ..golden.planning.machine_plan import Plan, plan
 from ..golden.planning.machines import PRESETS, check_max_error, full_machine
 from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
@@ -136,9 +137,9 @@ def option_words(options: MachineOptions) -> list[str]:
 
 def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
     """A line where the memory cannot hold the highest resolution."""
-    interlace = configuration.interlace
-    if (interlace.width, interlace.height) == (configuration.width, configuration.height):
+    width, height, *_ = organisation_of(configuration).resolution
+    if (width, height) == (configuration.width, configuration.height):
         return ()
-    return (f"{configuration.words} words in each memory unit hold {interlace.width}x"
-            f"{interlace.height} pixels, not {configuration.width}x{configuration.height}: the "
+    return (f"{configuration.words} words in each memory unit hold {width}x"
+            f"{height} pixels, not {configuration.width}x{configuration.height}: the "
             "picture is coarser",)

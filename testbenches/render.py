@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..golden.organisations.organisation_of import organisation_of
 from ..golden.reference.exact import depth_complexity
 from ..golden.scene_display_list import SceneDisplayList
 from ..golden.specification.configuration import MachineConfiguration
@@ -51,11 +52,10 @@ class RenderJob:
     def expected_cycles(self) -> int:
         """A guess, within a third or so, at what the simulation takes: for the progress bar."""
         configuration = self.configuration
-        interlace = configuration.interlace
+        organisation = organisation_of(configuration)
         listed = self.scene.display_list
-        fragments = int(depth_complexity(listed, x_shift=interlace.x_shift,
-                                         y_shift=interlace.y_shift).sum())
-        boot = 100 + interlace.words
+        fragments = int(depth_complexity(listed, **organisation.resolution.shifts).sum())
+        boot = 100 + organisation.words
         # Either memory or the broadcast of triangles is the bottleneck.
         clocks = 2.5 if configuration.memory_ports == 1 else 1.2
         draw = max(clocks * fragments / configuration.processing_elements,

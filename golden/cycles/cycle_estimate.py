@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..reference.exact import depth_complexity
 from ..specification.configuration import MachineConfiguration
@@ -31,7 +32,7 @@ from ..specification.errors import InputError
 from ..specification.queues import FRAGMENTS_WAITING
 from ..specification.sampling_grid import Grid
 from .element_latencies import PIPELINE
-from .element_spans import lattice_blocks, lattice_spans
+from .element_spans import lattice_spans
 from .one_port_lanes import scan_share
 from .row_clocks import walks
 
@@ -70,11 +71,13 @@ class CycleEstimate:
 def estimate_cycles(configuration: MachineConfiguration,
                     display_list: DisplayList) -> CycleEstimate:
     """How long ``configuration`` takes for ``display_list``; whole arrays, no loop over pixels."""
-    interlace = configuration.interlace
-    shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
+    organisation = organisation_of(configuration)
+    shifts = organisation.resolution.shifts
     triangles = Triangles.of(display_list, Grid.of(display_list, **shifts))
-    blocks = lattice_blocks(configuration)
-    elements = configuration.processing_elements
+    blocks = organisation.blocks
+    alone = np.array([block.units == 1 for block in blocks])
+    alternating = np.array([block.alternating for block in blocks])
+    elements = len(organisation.domains)
     written, slots = 0.0, 0.0
     if configuration.memory_ports == 1:
         written = visible_share(depth_complexity(display_list, **shifts))
@@ -85,9 +88,9 @@ def estimate_cycles(configuration: MachineConfiguration,
         places = spans.triangle * elements + spans.element
         # Writes wait for reads of the same unit: none where units are in turn along the row; where
         # they are from row to row, those of a row that is longer than what can wait.
-        alone = (interlace.x_unit_bits == spans.x_bits) & (interlace.y_unit_bits == spans.y_bits)
-        waits = np.where(alone, spans.length, np.maximum(spans.length - FRAGMENTS_WAITING, 0))
-        waits[(interlace.x_unit_bits > spans.x_bits) | (~alone & configuration.skew)] = 0
+        waits = np.where(alone[spans.block], spans.length,
+                         np.maximum(spans.length - FRAGMENTS_WAITING, 0))
+        waits[alternating[spans.block]] = 0
         clocks = (spans.length + written * waits) / (1 - slots)
         drawn = np.bincount(places, clocks, count * elements)
         _, walked, _ = walks(blocks, elements, spans, PIPELINE)

@@ -1,7 +1,7 @@
 """Clocks that a machine takes for a list of triangles, by model instead of simulation.
 
-A triangle costs a processing element clocks of its walker (``element_walks``) and
-clocks of its memory ports (``two_ports``, ``one_port``).  The list is
+A triangle costs a processing element clocks of its walker (``row_clocks``) and
+clocks of its memory ports (``two_port_element``, ``one_port_element``).  The list is
 followed triangle by triangle, through those elements that keep it::
 
     load   = max(broadcast + queue, the load before + its walk)
@@ -29,12 +29,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.sampling_grid import Grid
 from .element_latencies import NEVER, PIPELINE, Drawn, Pipeline
-from .element_spans import LatticeSpans, lattice_blocks, lattice_spans
+from .element_spans import LatticeSpans, lattice_spans
 from .one_port_element import OnePort
 from .port_accesses import PortAccesses
 from .row_clocks import Entries, entries_of
@@ -113,11 +114,11 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     machine's own set-up, or None where the triangles come prepared; ``pipeline`` is that of the
     machine.  Precision does not matter to the clocks.
     """
-    interlace = configuration.interlace
+    organisation = organisation_of(configuration)
     triangles = Triangles.of(display_list,
-                             Grid.of(display_list, interlace.x_shift, interlace.y_shift))
-    blocks = lattice_blocks(configuration)
-    elements = configuration.processing_elements
+                             Grid.of(display_list, **organisation.resolution.shifts))
+    blocks = organisation.blocks
+    elements = len(organisation.domains)
     ports: _Ports = (
         OnePort(configuration, PortAccesses(configuration, display_list, triangles, after),
                 pipeline)

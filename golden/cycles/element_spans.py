@@ -7,46 +7,20 @@ a row are cut up among the lattices that have pixels in that row.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation import ElementBlock
 from ..reference.coverage import Spans, Triangles, spans
-from ..specification.card_order import domains
-from ..specification.configuration import MachineConfiguration
-from ..specification.interlace import Interlace
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
 
 #: Rows of triangles cut up at once.
 ROW_LIMIT = 1 << 12
-
-
-@dataclass(frozen=True)
-class LatticeBlock:
-    """An aligned power of two of units: squares ``2**square_bits`` pixels wide, ``2**x_bits`` and
-    ``2**y_bits`` squares apart, from an offset in squares.
-
-    ``shifted``: every other row, from the second on, has its pixels half as far to the side.
-    ``place`` counts the blocks of one processing element, ``element``.
-    """
-
-    element: int
-    place: int
-    x_offset: int
-    y_offset: int
-    x_bits: int
-    y_bits: int
-    square_bits: int
-    shifted: bool
-
-    def x_offset_of(self, row: int) -> int:
-        """Of a row that it owns."""
-        further = self.shifted and row >> self.y_bits & 1
-        return self.x_offset ^ (1 << self.x_bits >> 1 if further else 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,33 +59,7 @@ class LatticeSpans:
     met: Bool
 
 
-def lattice_blocks(configuration: MachineConfiguration) -> list[LatticeBlock]:
-    """The blocks of every processing element, in the order in which they are walked."""
-    interlace = configuration.interlace
-    return [block for element, (first, count) in enumerate(domains(configuration.cards))
-            for block in _blocks(element, first, first + count, interlace,
-                                 configuration.square_bits)]
-
-
-def _blocks(element: int, first: int, end: int, interlace: Interlace,
-            square_bits: int) -> Iterator[LatticeBlock]:
-    place = 0
-    while first < end:
-        largest = (end - first).bit_length() - 1
-        aligned = (first & -first).bit_length() - 1 if first else largest
-        bits = min(largest, aligned)
-        x_bits, y_bits = interlace.stride_bits(bits)
-        x, y = (position >> square_bits for position in interlace.pixel(first, 0))
-        shifted = interlace.shifted(bits)
-        if shifted:  # by its last bit, in rows where the bit of y is 0
-            x |= (first & 1) << x_bits - 1
-        yield LatticeBlock(element, place, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1),
-                           x_bits, y_bits, square_bits, shifted)
-        first += 1 << bits
-        place += 1
-
-
-def lattice_spans(triangles: Triangles, blocks: list[LatticeBlock],
+def lattice_spans(triangles: Triangles, blocks: Sequence[ElementBlock],
                   row_limit: int = ROW_LIMIT) -> Iterator[LatticeSpans]:
     """All triangles, about ``row_limit`` rows at a time."""
     begin = 0
@@ -134,7 +82,7 @@ def _before(position: Int64, offset: Int64 | int, bits: Int64 | int, square_bits
     return np.asarray((squares << square_bits) + np.where(ahead == 0, within, 0))
 
 
-def _cut(triangles: Triangles, blocks: list[LatticeBlock], begin: int, end: int,
+def _cut(triangles: Triangles, blocks: Sequence[ElementBlock], begin: int, end: int,
          whole: Spans) -> LatticeSpans:
     facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
              for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits", "shifted")}

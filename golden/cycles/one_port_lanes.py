@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..specification.card_order import domains
+from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
 
@@ -34,7 +34,7 @@ LANE_START = 3
 def clocks_per_row(configuration: MachineConfiguration) -> int:
     """Of the lines of the scan that show a row of the picture, blanking beside it included."""
     line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
-    return line << configuration.interlace.y_shift
+    return line << organisation_of(configuration).resolution.y_shift
 
 
 def _shown(configuration: MachineConfiguration) -> float:
@@ -45,28 +45,26 @@ def _shown(configuration: MachineConfiguration) -> float:
 
 def scan_share(configuration: MachineConfiguration) -> float:
     """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
-    interlace = configuration.interlace
-    groups = configuration.clocks_per_pixel << (interlace.x_unit_bits + interlace.x_shift)
-    return _shown(configuration) / (groups << interlace.y_unit_bits)
+    # Every unit reads as often as the others.
+    organisation = organisation_of(configuration)
+    clocks = configuration.clocks_per_pixel << organisation.resolution.x_shift
+    return _shown(configuration) / (clocks * organisation.units)
 
 
 def scan_shares(configuration: MachineConfiguration) -> Float64:
     """float64 (rows, elements, 2): of a clock in such a row of the picture, how much the scan
     has of each lane; blanking of both kinds is spread over all.  The rows repeat."""
-    interlace = configuration.interlace
-    columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
-    rows = 1 << interlace.unit_mask("y").bit_length()
+    organisation = organisation_of(configuration)
+    elements = len(organisation.domains)
+    unit, group = organisation.scan_tile, organisation.scan_group
+    rows, columns = unit.shape
     y, x = np.mgrid[:rows, :columns]
-    owner = np.full(interlace.units, configuration.processing_elements)  # orphans' own
-    for element, (first, count) in enumerate(domains(configuration.cards)):
-        owner[first:first + count] = element
-    unit = interlace.unit(x, y)
     lane = unit & 1 if depth_lanes(configuration) == 2 else unit * 0
     # A unit reads for a group of pixels at once, at its beginning.
-    groups = columns >> interlace.group_bits
-    read = np.zeros((rows, groups, configuration.processing_elements + 1, 2))
-    read[y, x >> interlace.group_bits, owner[unit], lane] = 1
-    clocks = configuration.clocks_per_pixel << interlace.group_bits + interlace.x_shift
+    clocks = configuration.clocks_per_pixel * group << organisation.resolution.x_shift
+    read = np.zeros((rows, columns // group, elements + 1, 2))  # the last one has the orphans
+    for owner in organisation.owners:
+        read[y, x // group, owner[unit], lane] = 1
     return np.asarray(read[:, :, :-1].mean(axis=1) * (_shown(configuration) / clocks))
 
 

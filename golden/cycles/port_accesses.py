@@ -1,7 +1,7 @@
 """How often spans access memory units of one port.
 
 With two ports a fragment takes one clock, seen or not.  One port is shared by reads,
-writes and the scan's slots, in lanes side by side: see ``lanes``.
+writes and the scan's slots, in lanes side by side: see ``one_port_lanes``.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..reference.exact import draw, fragments
 from ..specification.configuration import MachineConfiguration
@@ -32,12 +33,14 @@ class PortAccesses:
         self._configuration = configuration
         self._display_list = display_list
         self._triangles = triangles
-        interlace = configuration.interlace
-        self._nearest = np.full(interlace.width * interlace.height, configuration.depth_background)
-        self._accesses = np.zeros(interlace.units)
+        organisation = self._organisation = organisation_of(configuration)
+        width, height, *_ = organisation.resolution
+        self._nearest = np.full(width * height, configuration.depth_background)
+        self._accesses = np.zeros(organisation.units)
+        self._block_units = np.array([block.units for block in organisation.blocks])
         if after is not None:
-            self._nearest = draw(after, shading="flat", x_shift=interlace.x_shift,
-                                 y_shift=interlace.y_shift).depth.astype(np.int64).reshape(-1)
+            picture = draw(after, shading="flat", **organisation.resolution.shifts)
+            self._nearest = picture.depth.astype(np.int64).reshape(-1)
 
     def of(self, spans: LatticeSpans) -> Float64:
         """float64 (n, 3, 2), by lane: fragments of each span, visible ones, and the clocks that
@@ -45,9 +48,8 @@ class PortAccesses:
         if not len(spans.length):
             return np.zeros((0, 3, 2))
         reads, writes = self._accesses_of(spans)
-        # Units of a block, half of them in each lane.
-        block_bits = self._configuration.interlace.unit_bits - spans.x_bits - spans.y_bits
-        ways = 1 << np.maximum(block_bits - 1, 0)
+        # Half of a block's units are in each lane.
+        ways = np.maximum(self._block_units[spans.block] // 2, 1)
         work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
         return np.stack([reads, writes, work], axis=1)
 
@@ -60,17 +62,16 @@ class PortAccesses:
     def _accesses_of(self, spans: LatticeSpans) -> tuple[Int64, Int64]:
         """int64 (n, 2), by lane: fragments of each span, and visible ones, as the pixels are drawn
         one after another."""
-        interlace = self._configuration.interlace
+        organisation = self._organisation
         kept = self._triangles.primitive[spans.begin:spans.end]
         part = replace(self._display_list, **{
             name: getattr(self._display_list, name)[kept]
             for name in ("position", "depth", "color")})
-        drawn = fragments(part, shading="flat", x_shift=interlace.x_shift,
-                          y_shift=interlace.y_shift)
+        drawn = fragments(part, shading="flat", **organisation.resolution.shifts)
         x, y = drawn.x.astype(np.int64), drawn.y.astype(np.int64)
-        visible = self._visible(y * interlace.width + x, drawn.depth)
-        unit = interlace.unit(x, y)
-        self._accesses += np.bincount(unit, 1 + visible, interlace.units)
+        visible = self._visible(y * organisation.resolution.width + x, drawn.depth)
+        unit = organisation.unit(x, y)
+        self._accesses += np.bincount(unit, 1 + visible, organisation.units)
         lane = unit & 1 if depth_lanes(self._configuration) == 2 else unit * 0
         # Fragments come in the order of the whole spans and of the columns in each.
         whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)

@@ -2,25 +2,27 @@
 
 A processing element is two servers in a row: the walker, which finds a row a clock,
 and the memory ports, which take clocks for each fragment; between them wait the
-spans that were found ahead.  What the ports take is ``two_ports`` and
-``one_port``.
+spans that were found ahead.  What the ports take is ``two_port_element`` and
+``one_port_element``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation import ElementBlock
 from .element_latencies import Pipeline
-from .element_spans import LatticeBlock, LatticeSpans
+from .element_spans import LatticeSpans
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
 
 
-def walks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
+def walks(blocks: Sequence[ElementBlock], elements: int, spans: LatticeSpans,
           pipeline: Pipeline) -> tuple[Bool, Int64, Int64]:
     """Which element keeps which triangle, bool (triangles, elements); from its load the clocks to
     the next one, alike; and to the first row of each block, (triangles, blocks).
@@ -47,7 +49,7 @@ def walks(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
     return kept, np.where(kept, clocks, 0), first_row
 
 
-def _blocks_of(blocks: list[LatticeBlock], elements: int) -> Int64:
+def _blocks_of(blocks: Sequence[ElementBlock], elements: int) -> Int64:
     return np.bincount([block.element for block in blocks], minlength=elements)
 
 
@@ -81,7 +83,7 @@ class Entries:
         return np.searchsorted(self.pair, np.arange(len(self.triangle) + 1))
 
 
-def entries_of(blocks: list[LatticeBlock], elements: int, spans: LatticeSpans,
+def entries_of(blocks: Sequence[ElementBlock], elements: int, spans: LatticeSpans,
                pipeline: Pipeline) -> Entries:
     """What leaves the walkers for the triangles of ``spans``."""
     kept, walk, first_row = walks(blocks, elements, spans, pipeline)

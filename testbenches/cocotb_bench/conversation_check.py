@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ...golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from .violation import ProtocolError
@@ -30,7 +30,7 @@ class ConversationCheck:
 
     def __init__(self, configuration: MachineConfiguration, commands: Sequence[int]) -> None:
         self._configuration = configuration
-        self._domains = domains(configuration.cards)
+        self._organisation = organisation_of(configuration)
         self._expected = list(self._boot())
         refused = self._expected[-1].kind == ResponseKind.ERROR
         due = len(self._expected)
@@ -73,17 +73,15 @@ class ConversationCheck:
         self._received += 1
 
     def _boot(self) -> Iterator[Expected]:
-        configuration = self._configuration
-        for first, count in self._domains:
-            yield Expected(ResponseKind.DOMAIN, first << 16 | count, -1)
-        owned = sum(count for _, count in self._domains)
-        yield Expected(ResponseKind.UNITS, owned << 16 | configuration.units, -1)
-        shares_differ = any(count != 1 << configuration.share_bits for _, count in self._domains)
-        if configuration.units.bit_count() != 1 or (configuration.block > 1 and shares_differ):
+        organisation = self._organisation
+        for domain in organisation.domains:
+            yield Expected(ResponseKind.DOMAIN, domain.first << 16 | domain.units, -1)
+        yield Expected(ResponseKind.UNITS, organisation.owned_units << 16 | organisation.units, -1)
+        if organisation.refused:
             yield Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, -1)
             return
-        interlace = configuration.interlace
-        yield Expected(ResponseKind.PICTURE, interlace.height << 16 | interlace.width, -1)
+        width, height, *_ = organisation.resolution
+        yield Expected(ResponseKind.PICTURE, height << 16 | width, -1)
         yield Expected(ResponseKind.BOOTED, None, -1)
 
     def _answers(self, number: int, opcode: int) -> list[Expected]:
@@ -92,10 +90,9 @@ class ConversationCheck:
         if opcode == Opcode.FRAME_END:
             kinds = [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
         elif opcode == Opcode.READ_DEPTH:
-            words = self._configuration.interlace.words
-            kinds = [ResponseKind.DEPTH] * (words * sum(count for _, count in self._domains))
+            kinds = [ResponseKind.DEPTH] * self._organisation.depths_read_back
         elif opcode == Opcode.READ_COUNTERS:
-            kinds = [ResponseKind.FRAGMENTS, ResponseKind.BUSY] * len(self._domains)
+            kinds = [ResponseKind.FRAGMENTS, ResponseKind.BUSY] * len(self._organisation.domains)
         else:
             return [Expected(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, number)]
         return [Expected(kind, None, number) for kind in kinds]
@@ -110,13 +107,3 @@ class ConversationCheck:
         if kind == ResponseKind.FRAME_SHOWN:
             return cycle // self._configuration.cycles_per_scan + 1
         return (1 << 32) - 1
-
-
-def domains(cards: str) -> list[tuple[int, int]]:
-    """Of each processing element, left to right: its first memory unit and how many it owns."""
-    found: list[tuple[int, int]] = []
-    for place, card in enumerate(cards):
-        if card == PROCESSING_ELEMENT:
-            behind = cards[place + 1:].partition(PROCESSING_ELEMENT)[0]
-            found.append((cards[:place].count(MEMORY_UNIT), len(behind)))
-    return found

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.engine import Scan
-from .conversation_check import domains
 from .violation import ProtocolError
 
 
@@ -51,12 +51,8 @@ def owned_pixels(configuration: MachineConfiguration) -> NDArray[np.bool_]:
 
     Nobody draws the others.
     """
-    interlace = configuration.interlace
-    y, x = np.mgrid[:configuration.height, :configuration.width]
-    units = interlace.unit(x >> interlace.x_shift, y >> interlace.y_shift)
-    owned = [unit for first, count in domains(configuration.cards)
-             for unit in range(first, first + count)]
-    return np.isin(units, owned)
+    organisation = organisation_of(configuration)
+    return organisation.video(organisation.owned_pixels)
 
 
 def masked(scans: Sequence[Scan], owned: NDArray[np.bool_]) -> list[Scan]:

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import CHANNEL_BITS
@@ -63,14 +64,14 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
 
 
 def _configuration(configuration: MachineConfiguration) -> dict:
-    interlace = configuration.interlace
+    organisation = organisation_of(configuration)
     return {
         **asdict(configuration),
         "memory_units": configuration.units,
         "processing_elements": configuration.processing_elements,
-        "picture_width": interlace.width,
-        "picture_height": interlace.height,
-        "scan_reads_per_line": interlace.scan_reads,
+        "picture_width": organisation.resolution.width,
+        "picture_height": organisation.resolution.height,
+        "scan_reads_per_line": organisation.scan_reads_per_line,
         "cycles_per_scan": configuration.cycles_per_scan,
     }
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference import bit_true, exact
 from ...golden.reference.triangle_setup import scene_fraction_bits
@@ -14,7 +15,6 @@ from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.picture import Picture
 from .responses import Simulation
-from .simulation import expected_video
 
 Color = tuple[int, int, int]
 
@@ -101,8 +101,8 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     Colour is compared as it left the video pins, at the highest resolution; depth as it was read
     back, at the machine's.
     """
-    interlace = configuration.interlace
-    shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
+    organisation = organisation_of(configuration)
+    shifts = organisation.resolution.shifts
     reference = exact.draw(display_list, shading=configuration.shading, **shifts)
     listed = fitted(configuration, display_list)
     needed = scene_fraction_bits(listed, **shifts)
@@ -110,9 +110,9 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     if configuration.fraction_bits < needed:
         golden = bit_true.draw(listed, fraction_bits=configuration.fraction_bits,
                                shading=configuration.shading, **shifts)
-    expected = expected_video(configuration, golden.color)
+    expected = organisation.video(golden.color)
     depth_orphans = simulation.depth < 0
-    color_orphans = expected_video(configuration, depth_orphans)
+    color_orphans = organisation.video(depth_orphans)
     color_different = (simulation.video != expected).any(axis=2) & ~color_orphans
     depth_different = (simulation.depth != golden.depth) & ~depth_orphans
     return Comparison(
@@ -124,11 +124,11 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
         color_orphans=color_orphans,
         depth_orphans=depth_orphans,
         depth_max_error=_greatest(simulation.depth, reference.depth, ~depth_orphans),
-        color_max_error=_greatest(simulation.video, expected_video(configuration, reference.color),
+        color_max_error=_greatest(simulation.video, organisation.video(reference.color),
                                   ~color_orphans),
         first_difference=_first_difference(
             configuration, display_list, simulation, golden,
-            color_different | expected_video(configuration, depth_different)),
+            color_different | organisation.video(depth_different)),
     )
 
 
@@ -149,8 +149,8 @@ def _first_difference(
     if not different.any():
         return None
     y, x = (int(index) for index in np.unravel_index(different.argmax(), different.shape))
-    interlace = configuration.interlace
-    row, column = y >> interlace.y_shift, x >> interlace.x_shift
+    organisation = organisation_of(configuration)
+    column, row = organisation.video_pixel(x, y)
     return FirstDifference(
         pixel=(x, y),
         machine_pixel=(column, row),
@@ -158,8 +158,8 @@ def _first_difference(
         got=PixelValue(_color(simulation.video[y, x]), int(simulation.depth[row, column])),
         winner=int(golden.winner[row, column]),
         fragments=exact.fragments(
-            display_list, shading=configuration.shading, x_shift=interlace.x_shift,
-            y_shift=interlace.y_shift, pixel=(column, row)),
+            display_list, shading=configuration.shading, pixel=(column, row),
+            **organisation.resolution.shifts),
     )
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference import triangle_words
 from ...golden.reference.triangle_setup import in_finer_words, prepare
 from ...golden.specification import commands
-from ...golden.specification.card_order import domains
 from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
@@ -30,12 +30,11 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     if configuration.setup == "hardware" and fraction_bits is None:
         return [start, *triangle_words.triangles(configuration, fitting), end]
-    interlace = configuration.interlace
     own = configuration.fraction_bits
     prepared = prepare(fitting,
                        fraction_bits=own if fraction_bits is None else fraction_bits,
                        shading=configuration.shading,
-                       x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+                       **organisation_of(configuration).resolution.shifts)
     prepared = in_finer_words(prepared, own)
     return [start, *triangle_words.prepared_triangles(configuration, prepared), end]
 
@@ -53,9 +52,9 @@ def frame_job(
     """Everything an engine needs to run one frame with depths and counters read back."""
     words = [*frame_commands(configuration, display_list, fraction_bits),
              commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
-    interlace, elements = configuration.interlace, configuration.processing_elements
+    organisation = organisation_of(configuration)
+    elements, depths = len(organisation.domains), organisation.depths_read_back
     boot = elements + 3  # domains, units, picture, booted
-    depths = sum(units for _, units in domains(configuration.cards)) * interlace.words
     return Job(
         configuration=configuration,
         commands=words,
@@ -77,6 +76,6 @@ def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> in
     pixels = configuration.width * configuration.height
     divisions = 3 * configuration.setup_interval
     return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)
-            + 30 * configuration.interlace.units * configuration.interlace.words
+            + 30 * organisation_of(configuration).depths_read_back
             + 4 * configuration.cycles_per_scan)
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.commands import ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.interlace import Interlace
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import EngineRun, Scan
 
@@ -38,7 +38,7 @@ class Simulation:
     ``video``            uint8 (height, width, 3), highest resolution, from the video pins
     ``depth``            int64 (h, w) at the machine's resolution, read back through the controller;
                          -1 where the pixel's unit belongs to no processing element
-    ``interlace``        resolution and interlace the machine settled on
+    ``resolution``       width and height that the machine reported
     ``work``             one entry per processing element, left to right
     ``owned``, ``total`` memory units in some domain, memory units in the cage
     ``boot_cycles``      reset to ready
@@ -50,7 +50,7 @@ class Simulation:
 
     video: NDArray[np.uint8]
     depth: NDArray[np.int64]
-    interlace: Interlace
+    resolution: tuple[int, int]
     work: Sequence[Work]
     owned: int
     total: int
@@ -73,17 +73,17 @@ def interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulation
         values[kind].append(value)
     if values[ResponseKind.ERROR]:
         raise MachineError(f"the machine reports fault {values[ResponseKind.ERROR][0]}")
-    interlace = configuration.interlace
-    picture = values[ResponseKind.PICTURE][0]
-    if (picture & 0xFFFF, picture >> 16) != (interlace.width, interlace.height):
-        raise MachineError(f"the machine draws {picture & 0xFFFF}x{picture >> 16}, expected "
-                           f"{interlace.width}x{interlace.height}")
+    organisation = organisation_of(configuration)
+    expected, picture = organisation.resolution[:2], values[ResponseKind.PICTURE][0]
+    resolution = picture & 0xFFFF, picture >> 16
+    if resolution != expected:
+        raise MachineError("the machine draws {}x{}, expected {}x{}".format(*resolution, *expected))
     domains = [(value >> 16, value & 0xFFFF) for value in values[ResponseKind.DOMAIN]]
     units = values[ResponseKind.UNITS][0]
     return Simulation(
         video=run.scans[-1].picture,
-        depth=depth_image(interlace, domains, values[ResponseKind.DEPTH]),
-        interlace=interlace,
+        depth=organisation.depth_image(values[ResponseKind.DEPTH]),
+        resolution=resolution,
         work=[Work(first, count, fragments, busy) for (first, count), fragments, busy in
               zip(domains, values[ResponseKind.FRAGMENTS], values[ResponseKind.BUSY],
                   strict=True)],
@@ -100,17 +100,3 @@ def interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulation
         notes=run.notes,
         activity=run.activity[0] if run.activity else None,
     )
-
-
-
-def depth_image(interlace: Interlace, domains: Sequence[tuple[int, int]],
-                 words: Sequence[int]) -> NDArray[np.int64]:
-    """Depth words, in the order of the read-back, put where their pixels are."""
-    units = np.concatenate([np.arange(first, first + count) for first, count in domains])
-    unit, address = np.meshgrid(units, np.arange(interlace.words), indexing="ij")
-    x, y = interlace.pixel(unit, address)
-    inside = (x < interlace.width) & (y < interlace.height)  # padding words hold no pixel
-    depth = np.full((interlace.height, interlace.width), -1, np.int64)
-    depth[y[inside], x[inside]] = np.array(words, np.int64).reshape(unit.shape)[inside]
-    return depth
-

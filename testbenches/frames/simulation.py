@@ -5,9 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -36,15 +33,6 @@ def simulate(
     job = frame_job(configuration, display_list, memory_seed=memory_seed, stall_seed=stall_seed,
                     waveform=waveform, fraction_bits=fraction_bits)
     return interpret(configuration, engine.run(job, progress))
-
-
-def expected_video(configuration: MachineConfiguration,
-                   color: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """A picture at the machine's resolution as the scan shows it: each pixel as often as the
-    highest resolution has it."""
-    interlace = configuration.interlace
-    video = color.repeat(1 << interlace.y_shift, axis=0).repeat(1 << interlace.x_shift, axis=1)
-    return video[: configuration.height, : configuration.width]
 
 
 def simulate_frame(engine: str, configuration: MachineConfiguration, display_list: DisplayList,

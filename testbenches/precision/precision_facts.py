@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from ...golden.organisations.organisation_of import organisation_of
 from .precision_chart import PEER_CASE, PEER_DEPTH_BITS, measured_peers, own_points, pareto_front
 from .scene_precision import Precision, PrecisionRow
 
@@ -27,8 +28,8 @@ def precision_facts(precision: Precision) -> dict[str, Any]:
             "memory_units": machine.units,
             "width": machine.width,
             "height": machine.height,
-            "picture_width": machine.interlace.width,
-            "picture_height": machine.interlace.height,
+            "picture_width": organisation_of(machine).resolution.width,
+            "picture_height": organisation_of(machine).resolution.height,
             "sub_bits": machine.sub_bits,
             "depth_bits": machine.depth_bits,
             "shading": machine.shading,

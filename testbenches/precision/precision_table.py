@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.precision.precision_study import PictureError
 from ..fpga.place_and_route import Placement
 from ..support.text_table import TextTable
@@ -80,8 +81,9 @@ def precision_table(precision: Precision) -> None:
 def headline(precision: Precision) -> list[str]:
     """The verdict first."""
     machine, problems = precision.machine, precision.problems()
+    width, height, *_ = organisation_of(machine).resolution
     about = (f"{precision.scene.name}: {precision.scene.display_list.triangles:,} triangles at "
-             f"{machine.interlace.width}x{machine.interlace.height} on {machine.cards}; exact "
+             f"{width}x{height} on {machine.cards}; exact "
              f"from {machine.fraction_bits} fraction bits")
     if problems:
         return [f"FAILED: {problem}" for problem in problems] + [about]

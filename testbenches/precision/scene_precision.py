@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.precision.precision_study import (
     Float32Point,
@@ -166,11 +167,11 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
                            ).configuration
     ideal = unquantised_scene(scene, listed.display_list,
                               "flat" if options.shading == "flat" else "gouraud")
-    interlace = machine.interlace
+    shifts = organisation_of(machine).resolution.shifts
     display_list = fitted(machine, listed.display_list)
     step("drawing the picture before quantisation")
     study = PrecisionStudy(display_list, ideal, shading=machine.shading,
-                           x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+                           **shifts)
     machines = {bits: plan_machine(listed.display_list, replace(options, fraction_bits=bits)
                                    ).configuration for bits in study.sweep()}
     points = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
@@ -74,7 +75,7 @@ def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
 
 def _machine(rendering: Rendering) -> dict[str, Any]:
     configuration = rendering.configuration
-    interlace = configuration.interlace
+    organisation = organisation_of(configuration)
     return {
         "cards": configuration.cards,
         "memory_units": configuration.units,
@@ -83,8 +84,8 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
         "processing_elements": configuration.processing_elements,
         "width": configuration.width,
         "height": configuration.height,
-        "picture_width": interlace.width,
-        "picture_height": interlace.height,
+        "picture_width": organisation.resolution.width,
+        "picture_height": organisation.resolution.height,
         "words": configuration.words,
         "sub_bits": configuration.sub_bits,
         "depth_bits": configuration.depth_bits,
@@ -100,7 +101,7 @@ def _machine(rendering: Rendering) -> dict[str, Any]:
         "memory_ports": configuration.memory_ports,
         "block": configuration.block,
         "skew": configuration.skew,
-        "scan_reads_per_line": interlace.scan_reads,
+        "scan_reads_per_line": organisation.scan_reads_per_line,
         "tag_bits": configuration.tag_bits,
         "setup": configuration.setup,
         "setup_interval": configuration.setup_interval,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification.card_order import MEMORY_UNIT, domains
 from ..engines.activity_record import ACTIVITY_KINDS
@@ -101,8 +102,8 @@ def _is_exact(rendering: Rendering) -> bool:
 
 def _display_list_facts(rendering: Rendering) -> dict[str, Any]:
     listed = rendering.scene.display_list
-    interlace = rendering.configuration.interlace
-    complexity = depth_complexity(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    organisation = organisation_of(rendering.configuration)
+    complexity = depth_complexity(listed, **organisation.resolution.shifts)
     covered = int((complexity > 0).sum())
     return {
         "coordinate_bits": listed.coordinate_bits,

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification import commands
-from ...golden.specification.card_order import domains
 from ...golden.specification.commands import Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
@@ -29,7 +29,7 @@ from ..engines.engine import Engine, EngineRun, Job, Progress
 from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import compare
 from ..frames.frame_job import cycle_bound, frame_commands
-from ..frames.responses import MachineError, Simulation, Work, depth_image
+from ..frames.responses import MachineError, Simulation, Work
 from .cases import CaseLists, Order
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
@@ -143,8 +143,8 @@ def _job(configuration: MachineConfiguration,
         frames.append(_Frame(case, len(words), len(once), len(twice)))
         words += [start, _READ_COUNTERS, *once, _READ_COUNTERS, *twice, _READ_COUNTERS, end,
                   _READ_DEPTH]
-    elements = configuration.processing_elements
-    depths = sum(units for _, units in domains(configuration.cards)) * configuration.interlace.words
+    organisation = organisation_of(configuration)
+    elements, depths = len(organisation.domains), organisation.depths_read_back
     return Job(
         configuration=configuration,
         commands=words,
@@ -169,21 +169,21 @@ def _by_kind(run: EngineRun) -> dict[ResponseKind, _Responses]:
 
 def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int, run: EngineRun,
                  responses: dict[ResponseKind, _Responses]) -> Measurement:
-    elements, case = configuration.processing_elements, frame.case
+    organisation, case = organisation_of(configuration), frame.case
+    elements = len(organisation.domains)
     counts = responses[ResponseKind.FRAGMENTS][0].reshape(-1, 3, elements)[number]
     busy = responses[ResponseKind.BUSY][0].reshape(-1, 3, elements)[number, -1]
     depths = responses[ResponseKind.DEPTH][0]
-    interlace = configuration.interlace
-    shares = domains(configuration.cards)
-    words = depths.reshape(-1, sum(count for _, count in shares) * interlace.words)[number]
+    words = depths.reshape(-1, organisation.depths_read_back)[number]
     shown = responses[ResponseKind.FRAME_SHOWN][1][number]
     simulation = Simulation(
         video=next(scan.picture for scan in run.scans if scan.cycle > shown),
-        depth=depth_image(interlace, shares, words),
-        interlace=interlace,
-        work=[Work(first, units, int(fragments), int(cycles)) for (first, units), fragments, cycles
-              in zip(shares, counts[-1], busy, strict=True)],
-        owned=configuration.units,
+        depth=organisation.depth_image(words),
+        resolution=organisation.resolution[:2],
+        work=[Work(domain.first, domain.units, int(fragments), int(cycles))
+              for domain, fragments, cycles
+              in zip(organisation.domains, counts[-1], busy, strict=True)],
+        owned=organisation.owned_units,
         total=configuration.units,
         boot_cycles=int(responses[ResponseKind.BOOTED][0][0]),
         draw_cycles=int(responses[ResponseKind.FRAME_DRAWN][0][number]),
@@ -193,7 +193,7 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
         cycles=run.cycles,
         seconds=run.seconds,
     )
-    shifts = {"x_shift": interlace.x_shift, "y_shift": interlace.y_shift}
+    shifts = organisation.resolution.shifts
     fragments = [int(depth_complexity(part, **shifts).sum()) for part in (case.once, case.twice)]
     where = f"{case.name}, {case.order} order, on {configuration.cards}"
     comparison = compare(configuration, case.frame, simulation)

@@ -9,6 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS
 from .cases import Order, peers
 from .speed_rows import BenchRow
@@ -123,7 +124,8 @@ def _facts(row: BenchRow) -> dict[str, Any]:
                     "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
                     "skew": machine.skew,
                     "fifo_depth": machine.fifo,
-                    "scan_reads_per_line": machine.configuration.interlace.scan_reads,
+                    "scan_reads_per_line":
+                        organisation_of(machine.configuration).scan_reads_per_line,
                     "fraction_bits": machine.configuration.fraction_bits},
         "case": row.case,
         "order": row.order,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from cardcage.golden.cycles.element_spans import lattice_blocks, lattice_spans
+from cardcage.golden.cycles.element_spans import lattice_spans
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.reference.coverage import Triangles
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -19,7 +20,8 @@ def scene(seed: int, n: int = 40, size: int = 12) -> DisplayList:
 
 def spans_of(configuration: MachineConfiguration, listed: DisplayList, row_limit: int = 64):
     triangles = Triangles.of(listed, Grid.of(listed))
-    return triangles, list(lattice_spans(triangles, lattice_blocks(configuration), row_limit))
+    blocks = organisation_of(configuration).blocks
+    return triangles, list(lattice_spans(triangles, blocks, row_limit))
 
 
 def owner(configuration: MachineConfiguration, unit: int) -> int:

@@ -12,7 +12,7 @@ from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.frame_job import frame_commands
-from cardcage.testbenches.frames.simulation import expected_video, simulate
+from cardcage.testbenches.frames.simulation import simulate
 
 BACKGROUND = (12, 34, 56)
 SCREEN = [[4, -16], [15.9, 8.5], [-15, 8.5]]  # covers all of 8 by 8 pixels
@@ -50,6 +50,14 @@ def joined(first, second):
     """One display list after the other."""
     return replace(first, **{field: np.concatenate([getattr(first, field), getattr(second, field)])
                              for field in ("position", "depth", "color")})
+
+
+def expected_video(configuration, color):
+    """A picture at the machine's resolution as the scan shows it: each pixel as often as the
+    highest resolution has it."""
+    interlace = configuration.interlace
+    rows, columns = np.mgrid[:configuration.height, :configuration.width]
+    return color[rows >> interlace.y_shift, columns >> interlace.x_shift]
 
 
 def golden_picture(configuration, display_list):

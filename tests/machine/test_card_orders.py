@@ -75,7 +75,7 @@ def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units, skew):
     """32 words: eight units hold the 256 pixels, one unit an eighth of them."""
     simulation = draw(LIST, cards="P" + "M" * units, words=32, maximum_units=16, skew=skew)
     resolutions = {1: (8, 4), 2: (8, 8), 4: (16, 8), 8: (16, 16), 16: (16, 16)}
-    assert (simulation.interlace.width, simulation.interlace.height) == resolutions[units]
+    assert simulation.resolution == resolutions[units]
 
 
 @pytest.mark.parametrize(("width", "height", "cards", "skew"), [

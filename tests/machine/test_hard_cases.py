@@ -6,6 +6,7 @@ colours are compared as they leave the video output, depths as they are read bac
 
 import numpy as np
 import pytest
+from frames import expected_video
 
 from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.reference import bit_true, exact
@@ -13,7 +14,7 @@ from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
-from cardcage.testbenches.frames.simulation import expected_video, simulate
+from cardcage.testbenches.frames.simulation import simulate
 
 #: Cards that draw the cases of each size; every case has one of these sizes.
 CARDS = {(32, 32): "PMPMMM", (97, 61): "PMM", (1000, 333): "PMM", (640, 480): "PMM"}

@@ -49,7 +49,7 @@ def test_boards_pulled_share_by_share(cards, resolution):
     """Cards built for 8 units of 32 words."""
     simulation = draw(random_list(24, 6, width=16, height=16), cards=cards, block=4, words=32,
                       maximum_units=8)
-    assert (simulation.interlace.width, simulation.interlace.height) == resolution
+    assert simulation.resolution == resolution
 
 
 @pytest.mark.parametrize("cards", ["PMMPMP M", "PMMPMMMM PMM"])

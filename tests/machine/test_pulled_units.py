@@ -1,13 +1,13 @@
 """Boards pulled out of the cage: it renumbers itself and keeps drawing."""
 
 import pytest
-from frames import check, golden_picture, random_list
+from frames import check, expected_video, golden_picture, random_list
 
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
-from cardcage.testbenches.frames.simulation import expected_video, simulate
+from cardcage.testbenches.frames.simulation import simulate
 
 LIST = random_list(11, 10, width=16, height=16)
 
@@ -28,7 +28,7 @@ def test_units_are_renumbered_and_the_total_returned(cards, resolution):
     configuration = cage(cards)
     simulation = simulate(configuration, LIST, PysimEngine(), memory_seed=5)
     check(configuration, LIST, simulation)
-    assert (simulation.interlace.width, simulation.interlace.height) == resolution
+    assert simulation.resolution == resolution
     assert simulation.total == configuration.units == simulation.owned
     firsts = [work.first_unit for work in simulation.work]
     assert firsts == [configuration.cards[:place].count("M")

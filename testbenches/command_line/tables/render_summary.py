@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ....golden.organisations.organisation_of import organisation_of
 from ...frames.compare import FirstDifference
 from ...frames.rendering import Rendering
 
@@ -9,12 +10,12 @@ from ...frames.rendering import Rendering
 def render_summary(rendering: Rendering) -> str:
     """The verdict and the main figures, in a few lines."""
     simulation, configuration = rendering.simulation, rendering.configuration
-    interlace = configuration.interlace
+    width, height, *_ = organisation_of(configuration).resolution
     lines = [
         _verdict(rendering),
         _line("scene", f"{rendering.scene.name}: {rendering.scene.display_list.triangles:,} "
               f"triangles, {rendering.fragments:,} fragments at "
-              f"{interlace.width}x{interlace.height}"),
+              f"{width}x{height}"),
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
         _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw; "
               f"{simulation.cycles:,} simulated by {simulation.engine} in "

@@ -13,7 +13,8 @@ from cycle_lists import CARDS, owner, scene
 
 from cardcage.golden.cycles.cycle_model import SetupTiming, predict_cycles
 from cardcage.golden.cycles.element_latencies import Pipeline
-from cardcage.golden.cycles.element_spans import lattice_blocks, lattice_spans
+from cardcage.golden.cycles.element_spans import lattice_spans
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.coverage import Triangles
 from cardcage.golden.reference.exact import fragments
@@ -30,7 +31,7 @@ def walked_by_hand(configuration: MachineConfiguration, listed: DisplayList, pip
     owners = np.array([owner(configuration, unit) for unit in range(configuration.units)])
     covered = Counter(zip(drawn.primitive.tolist(), configuration.interlace.unit(
         drawn.x, drawn.y).tolist(), drawn.y.tolist(), strict=True))
-    blocks = lattice_blocks(configuration)
+    blocks = organisation_of(configuration).blocks
     units = configuration.interlace.unit(*np.meshgrid(np.arange(listed.width),
                                                       np.arange(listed.height)))
     by_block = [  # the units whose pixels have its offset from a multiple of its stride

@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 from cycle_lists import CARDS, owner, scene, spans_of
 
-from cardcage.golden.cycles.element_spans import lattice_blocks
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import fragments
 
@@ -47,7 +47,7 @@ def test_rows_are_those_of_the_lattice(cards, skew):
     listed = scene(2)
     configuration = configure(listed, cards=cards, skew=skew)
     triangles, parts = spans_of(configuration, listed)
-    for number, block in enumerate(lattice_blocks(configuration)):
+    for number, block in enumerate(organisation_of(configuration).blocks):
         for part in parts:
             for place, triangle in enumerate(range(part.begin, part.end)):
                 rows = [row for row in range(triangles.top[triangle], triangles.bottom[triangle])

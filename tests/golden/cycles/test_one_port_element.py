@@ -9,12 +9,12 @@ import pytest
 from cycle_lists import owner, scene, spans_of
 
 from cardcage.golden.cycles.element_latencies import Pipeline
-from cardcage.golden.cycles.element_spans import lattice_blocks
 from cardcage.golden.cycles.one_port_element import OnePort
 from cardcage.golden.cycles.one_port_lanes import LANE_START, ElementLanes, scan_shares
 from cardcage.golden.cycles.port_accesses import PortAccesses
 from cardcage.golden.cycles.row_clocks import entries_of
 from cardcage.golden.cycles.two_port_element import TwoPorts
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import draw, fragments
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -148,7 +148,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
     configuration = configure(listed, cards="PMPMMM", clocks_per_pixel=256, memory_ports=2)
     _, (spans,) = spans_of(configuration, listed, 1 << 20)
     pipeline = Pipeline()
-    entries = entries_of(lattice_blocks(configuration), 2, spans, pipeline)
+    entries = entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)
 
     class Hidden:
         """No writes, all in one lane."""

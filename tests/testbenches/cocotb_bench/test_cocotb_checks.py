@@ -7,7 +7,7 @@ import pytest
 
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
-from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck, domains
+from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck
 from cardcage.testbenches.cocotb_bench.pin_check import PinCheck, Pins
 from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels
 from cardcage.testbenches.cocotb_bench.stream_check import StreamCheck
@@ -173,10 +173,6 @@ def test_squares_are_refused_where_shares_differ(block):
     else:
         found += [(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)]
     assert talk(found, cage, []).complete
-
-
-def test_domains():
-    assert domains("MPMMPPM") == [(1, 2), (3, 0), (3, 1)]
 
 
 def picture(level):

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from frames import expected_video
 
 from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.frames.compare import compare
 from cardcage.testbenches.frames.responses import Simulation, Work
-from cardcage.testbenches.frames.simulation import expected_video
 
 SCENE = "random:n=12,size=8,seed=5"
 PIXEL = (6, 5)
@@ -27,7 +27,7 @@ def frame(configuration, picture) -> Simulation:
     """What a machine that draws ``picture`` would hand back."""
     return Simulation(
         video=expected_video(configuration, picture.color).copy(), depth=picture.depth.copy(),
-        interlace=configuration.interlace, work=[Work(0, 1, 10, 20)], owned=1, total=1,
+        resolution=picture.depth.shape[::-1], work=[Work(0, 1, 10, 20)], owned=1, total=1,
         boot_cycles=1, draw_cycles=2, repeated_scans=0, scans=[], engine="none", cycles=3,
         seconds=1.0)
 

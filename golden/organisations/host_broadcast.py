@@ -1,0 +1,114 @@
+"""The cage of 1979: every processing element sees every primitive and draws its own pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+
+from ..specification import card_order
+from ..specification.interlace import Interlace
+from .organisation import Coordinate, Domain, ElementBlock, Int64, Organisation, Resolution
+
+
+class HostBroadcast(Organisation):
+    """One node; neighbouring pixels lie in different memory units (Fuchs & Johnson 1979, figures 12
+    to 14; Blazek's host broadcast, 1991)."""
+
+    name = "host broadcast"
+
+    @cached_property
+    def _interlace(self) -> Interlace:
+        return self.configuration.interlace
+
+    @property
+    def resolution(self) -> Resolution:
+        interlace = self._interlace
+        return Resolution(interlace.width, interlace.height, interlace.x_shift, interlace.y_shift)
+
+    @property
+    def refused(self) -> bool:
+        configuration = self.configuration
+        unequal = any(domain.units != 1 << configuration.share_bits for domain in self.domains)
+        return configuration.units.bit_count() != 1 or (configuration.block > 1 and unequal)
+
+    @cached_property
+    def domains(self) -> tuple[Domain, ...]:
+        return tuple(Domain(0, first, units)
+                     for first, units in card_order.domains(self.configuration.cards))
+
+    @property
+    def nodes(self) -> int:
+        return 1
+
+    @property
+    def units(self) -> int:
+        return self.configuration.units
+
+    @property
+    def words(self) -> int:
+        return self._interlace.words
+
+    def node_of(self, primitive: Int64) -> Int64:
+        return np.zeros_like(primitive)
+
+    def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
+        return self._interlace.unit(x, y)
+
+    def word(self, x: Coordinate, y: Coordinate) -> Coordinate:
+        return self._interlace.address(x, y)
+
+    def pixel(self, unit: Coordinate, word: Coordinate) -> tuple[Coordinate, Coordinate]:
+        return self._interlace.pixel(unit, word)
+
+    def shown_by(self, x: Int64, y: Int64) -> Int64:
+        return np.zeros_like(x)
+
+    @cached_property
+    def read_back(self) -> tuple[Int64, Int64]:
+        """Unit after unit of every domain, addresses ascending."""
+        units = np.concatenate([np.arange(first, first + count)
+                                for _, first, count in self.domains])
+        return units.repeat(self.words), np.tile(np.arange(self.words), len(units))
+
+    @property
+    def blocks(self) -> tuple[ElementBlock, ...]:
+        return tuple(block for element, (_, first, units) in enumerate(self.domains)
+                     for block in self._blocks(element, first, first + units))
+
+    def _blocks(self, element: int, first: int, end: int) -> Iterator[ElementBlock]:
+        """Aligned powers of two of units, the largest that fit."""
+        interlace, square_bits = self._interlace, self.configuration.square_bits
+        place = 0
+        while first < end:
+            largest = (end - first).bit_length() - 1
+            aligned = (first & -first).bit_length() - 1 if first else largest
+            bits = min(largest, aligned)
+            x_bits, y_bits = interlace.stride_bits(bits)
+            x, y = (position >> square_bits for position in interlace.pixel(first, 0))
+            shifted = interlace.shifted(bits)
+            if shifted:  # by its last bit, in rows where the bit of y is 0
+                x |= (first & 1) << x_bits - 1
+            yield ElementBlock(
+                element, place, x & ((1 << x_bits) - 1), y & ((1 << y_bits) - 1), x_bits, y_bits,
+                square_bits, shifted, 1 << bits,
+                bits > 0 and (interlace.x_unit_bits > x_bits or self.configuration.skew))
+            first += 1 << bits
+            place += 1
+
+    @property
+    def scan_tile(self) -> Int64:
+        interlace = self._interlace
+        columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
+        rows = 1 << interlace.unit_mask("y").bit_length()
+        y, x = np.mgrid[:rows, :columns]
+        return np.asarray(self.unit(x, y))
+
+    @property
+    def scan_group(self) -> int:
+        return 1 << self._interlace.group_bits
+
+    @property
+    def scan_reads_per_line(self) -> int:
+        return self._interlace.scan_reads

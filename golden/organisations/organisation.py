@@ -1,0 +1,220 @@
+"""What differs from one organisation of the cage to another, asked for in one place.
+
+Simulation, comparison, the cycle model, reports and the take-home bench ask an ``Organisation``
+and nothing else where a pixel lies and whose it is.  A new organisation is a class here and an
+entry in ``organisation_of``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple, TypedDict, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..specification.configuration import MachineConfiguration
+
+Bool = NDArray[np.bool_]
+Int64 = NDArray[np.int64]
+Coordinate = TypeVar("Coordinate", int, NDArray[np.int64])
+
+
+class Shifts(TypedDict):
+    """The resolution as the golden models take it."""
+
+    x_shift: int
+    y_shift: int
+
+
+class Resolution(NamedTuple):
+    """The picture that a cage draws: ``width`` by ``height`` pixels, each of them ``2**x_shift`` by
+    ``2**y_shift`` pixels of the highest resolution."""
+
+    width: int
+    height: int
+    x_shift: int
+    y_shift: int
+
+    @property
+    def shifts(self) -> Shifts:
+        """For the golden models: ``draw(display_list, **resolution.shifts)``."""
+        return {"x_shift": self.x_shift, "y_shift": self.y_shift}
+
+
+class Domain(NamedTuple):
+    """The memory units of one processing element: ``units`` of them in ``node``, from number
+    ``first`` on."""
+
+    node: int
+    first: int
+    units: int
+
+
+class ElementBlock(NamedTuple):
+    """Pixels that a processing element walks as one lattice: those of ``units`` of its units.
+
+    The lattice is of squares ``2**square_bits`` pixels wide, ``2**x_bits`` and ``2**y_bits``
+    squares apart, from an offset in squares.
+
+    ``element``      which of the processing elements
+    ``place``        counts the blocks of one processing element
+    ``shifted``      every other row, from the second on, has its pixels half as far to the side
+    ``alternating``  neighbours in a row of the lattice lie in different units
+    """
+
+    element: int
+    place: int
+    x_offset: int
+    y_offset: int
+    x_bits: int
+    y_bits: int
+    square_bits: int
+    shifted: bool
+    units: int
+    alternating: bool
+
+    def x_offset_of(self, row: int) -> int:
+        """Of a row that it owns."""
+        further = self.shifted and row >> self.y_bits & 1
+        return self.x_offset ^ (1 << self.x_bits >> 1 if further else 0)
+
+
+class Organisation(ABC):
+    """One cage: who draws primitive i, where a pixel lies, who shows it, what is read back.
+
+    Every node has the same number of units, and keeps pixel (x, y) in the unit ``unit(x, y)`` at
+    the word ``word(x, y)``, x and y at the resolution the cage draws at.
+    """
+
+    #: For reports.
+    name: ClassVar[str]
+
+    def __init__(self, configuration: MachineConfiguration) -> None:
+        self.configuration = configuration
+
+    @property
+    @abstractmethod
+    def resolution(self) -> Resolution:
+        """What the cage reports at boot."""
+
+    @property
+    @abstractmethod
+    def refused(self) -> bool:
+        """The cage boots, answers ``UNITS_UNSUPPORTED`` and draws nothing; of what follows only
+        ``domains`` can be asked."""
+
+    @property
+    @abstractmethod
+    def nodes(self) -> int:
+        """How many keep a picture of their own."""
+
+    @property
+    @abstractmethod
+    def units(self) -> int:
+        """Memory units of each node."""
+
+    @property
+    @abstractmethod
+    def words(self) -> int:
+        """Words of each memory unit that hold the picture."""
+
+    @property
+    @abstractmethod
+    def domains(self) -> tuple[Domain, ...]:
+        """Of each processing element, left to right: also the order in which they report their
+        domains at boot and answer ``READ_COUNTERS``."""
+
+    @abstractmethod
+    def node_of(self, primitive: Int64) -> Int64:
+        """Which node draws each primitive of a display list."""
+
+    @abstractmethod
+    def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
+        """The number, in its node, of the memory unit that holds a pixel."""
+
+    @abstractmethod
+    def word(self, x: Coordinate, y: Coordinate) -> Coordinate:
+        """The address at which it holds it."""
+
+    @abstractmethod
+    def pixel(self, unit: Coordinate, word: Coordinate) -> tuple[Coordinate, Coordinate]:
+        """x and y of what lies there; words that hold no pixel give one off the picture."""
+
+    @abstractmethod
+    def shown_by(self, x: Int64, y: Int64) -> Int64:
+        """The node whose memory the video output shows at each pixel."""
+
+    @property
+    @abstractmethod
+    def read_back(self) -> tuple[Int64, Int64]:
+        """The units and the words whose depths ``READ_DEPTH`` sends, in that order."""
+
+    @property
+    @abstractmethod
+    def blocks(self) -> tuple[ElementBlock, ...]:
+        """Of every processing element, in the order in which it walks them."""
+
+    @property
+    @abstractmethod
+    def scan_tile(self) -> Int64:
+        """int64 (rows, columns): the unit of each pixel of a piece that repeats over the
+        picture."""
+
+    @property
+    @abstractmethod
+    def scan_group(self) -> int:
+        """Pixels side by side for which a unit reads once, as the first of them is scanned."""
+
+    @property
+    @abstractmethod
+    def scan_reads_per_line(self) -> int:
+        """Scan reads of a memory unit in a line of the picture, at worst."""
+
+    # What follows from these.
+
+    @property
+    def owned_units(self) -> int:
+        """Memory units that some processing element draws into."""
+        return sum(domain.units for domain in self.domains)
+
+    @cached_property
+    def owners(self) -> Int64:
+        """int64 (nodes, units): the processing element that draws into each unit, or -1."""
+        owners = np.full((self.nodes, self.units), -1)
+        for element, (node, first, units) in enumerate(self.domains):
+            owners[node, first:first + units] = element
+        return owners
+
+    @property
+    def owned_pixels(self) -> Bool:
+        """bool (height, width): pixels that some processing element draws where they are shown."""
+        y, x = np.mgrid[:self.resolution.height, :self.resolution.width]
+        return np.asarray(self.owners[self.shown_by(x, y), self.unit(x, y)] >= 0)
+
+    @property
+    def depths_read_back(self) -> int:
+        """Responses to ``READ_DEPTH``."""
+        return len(self.read_back[0])
+
+    def depth_image(self, depths: Any) -> Int64:
+        """Depths in the order of the read-back, put where their pixels are: int64 (height, width),
+        -1 where nothing was read."""
+        width, height, *_ = self.resolution
+        x, y = self.pixel(*self.read_back)
+        inside = (x < width) & (y < height)
+        image = np.full((height, width), -1, np.int64)
+        image[y[inside], x[inside]] = np.asarray(depths, np.int64)[inside]
+        return image
+
+    def video(self, picture: NDArray[Any]) -> NDArray[Any]:
+        """A picture (height, width, …) at the cage's resolution as the scan shows it: each pixel as
+        often as the highest resolution has it."""
+        _, _, x_shift, y_shift = self.resolution
+        whole = picture.repeat(1 << y_shift, axis=0).repeat(1 << x_shift, axis=1)
+        return whole[:self.configuration.height, :self.configuration.width]
+
+    def video_pixel(self, x: int, y: int) -> tuple[int, int]:
+        """The pixel of the cage's resolution that pixel (x, y) of the video output shows."""
+        return x >> self.resolution.x_shift, y >> self.resolution.y_shift
