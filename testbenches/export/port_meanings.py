@@ -6,7 +6,7 @@ import re
 from amaranth.hdl import Shape, Value
 from amaranth.lib import data, stream, wiring
 
-__all__ = ["described_ports", "stated_timing"]
+__all__ = ["described_ports", "ports_in_parts", "stated_timing"]
 
 _HEADER = re.compile(r"(\w+(?:, \w+)*): (?:In|Out)(?:\((.*?)\))?(?: \[.*?\])?(?=, \w+:|$)")
 
@@ -48,6 +48,11 @@ def described_ports(component: wiring.Component) -> list[dict]:
 
     Signals of no bits are no ports in Verilog and are left out.
     """
+    return [{**port, "meaning": ": ".join(port["meaning"])} for port in ports_in_parts(component)]
+
+
+def ports_in_parts(component: wiring.Component) -> list[dict]:
+    """The same, but ``meaning`` a list of texts, from the member of the component inwards."""
     ports = []
     for path, member, value in component.signature.flatten(component):
         width = len(Value.cast(value))
@@ -56,7 +61,7 @@ def described_ports(component: wiring.Component) -> list[dict]:
                 "name": "__".join(map(str, path)),
                 "direction": "input" if member.flow == wiring.In else "output",
                 "width": width,
-                "meaning": _meaning(component, path),
+                "meaning": _meanings(component, path),
             }
             if isinstance(member.shape, data.Layout):
                 port["fields"] = list(_fields(member.shape))
@@ -76,7 +81,7 @@ def stated_timing(component: wiring.Component) -> dict:
             "stated": " ".join(stated)}
 
 
-def _meaning(component: wiring.Component, path: tuple) -> str:
+def _meanings(component: wiring.Component, path: tuple) -> list[str]:
     described, signature, texts = type(component), component.signature, []
     for name in path:
         if isinstance(name, int):  # an element of an array: described with it
@@ -93,7 +98,7 @@ def _meaning(component: wiring.Component, path: tuple) -> str:
             if isinstance(signature, wiring.FlippedSignature):
                 signature = signature.flip()  # the one that is documented
             described = type(signature)
-    return ": ".join(text.rstrip(".") for text in texts if text)
+    return [text.rstrip(".") for text in texts if text]
 
 
 def _members(described: type) -> dict[str, str]:
