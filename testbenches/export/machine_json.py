@@ -2,13 +2,12 @@
 
 import re
 from collections import Counter
-from dataclasses import asdict
 from importlib.metadata import version
 
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
-from ...golden.organisations.organisation_of import organisation_of
+from ...golden.organisations.machine_facts import machine_facts
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import CHANNEL_BITS
@@ -52,7 +51,7 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
     return {
         "version": version("cardcage"),
         "top": top,
-        "configuration": _configuration(configuration),
+        "configuration": machine_facts(configuration),
         "ports": [*_clock_ports(modules[top]),
                   *_inspected(component_for(configuration, name), described_ports)],
         "number_formats": _number_formats(configuration),
@@ -60,19 +59,6 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
                    for part in timed},
         "commands": _command_words(configuration),
         "memories": _memories(verilog, modules, top),
-    }
-
-
-def _configuration(configuration: MachineConfiguration) -> dict:
-    organisation = organisation_of(configuration)
-    return {
-        **asdict(configuration),
-        "memory_units": configuration.units,
-        "processing_elements": configuration.processing_elements,
-        "picture_width": organisation.resolution.width,
-        "picture_height": organisation.resolution.height,
-        "scan_reads_per_line": organisation.scan_reads_per_line,
-        "cycles_per_scan": configuration.cycles_per_scan,
     }
 
 

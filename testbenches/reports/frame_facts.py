@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...golden.organisations.organisation_of import organisation_of
+from ...golden.organisations.machine_facts import machine_facts
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
@@ -74,39 +74,11 @@ def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
 
 
 def _machine(rendering: Rendering) -> dict[str, Any]:
-    configuration = rendering.configuration
-    organisation = organisation_of(configuration)
     return {
-        "cards": configuration.cards,
-        "memory_units": configuration.units,
+        **machine_facts(rendering.configuration),
         "total_units": rendering.simulation.total,
         "owned_units": rendering.simulation.owned,
-        "processing_elements": configuration.processing_elements,
-        "width": configuration.width,
-        "height": configuration.height,
-        "picture_width": organisation.resolution.width,
-        "picture_height": organisation.resolution.height,
-        "words": configuration.words,
-        "sub_bits": configuration.sub_bits,
-        "depth_bits": configuration.depth_bits,
-        "fraction_bits": configuration.fraction_bits,
         "exact_fraction_bits": rendering.comparison.exact_fraction_bits,
-        "shading": configuration.shading,
-        "coordinate_bits": configuration.coordinate_bits,
-        "edge_column_bits": configuration.edge_column_bits,
-        "edge_remainder_bits": configuration.edge_remainder_bits,
-        "edge_fraction_bits": configuration.edge_fraction_bits,
-        "depth_plane_bits": configuration.depth_plane_bits,
-        "fifo_depth": configuration.fifo_depth,
-        "memory_ports": configuration.memory_ports,
-        "block": configuration.block,
-        "skew": configuration.skew,
-        "scan_reads_per_line": organisation.scan_reads_per_line,
-        "tag_bits": configuration.tag_bits,
-        "setup": configuration.setup,
-        "setup_interval": configuration.setup_interval,
-        "clocks_per_pixel": configuration.clocks_per_pixel,
-        "cycles_per_scan": configuration.cycles_per_scan,
     }
 
 

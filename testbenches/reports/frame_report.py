@@ -9,7 +9,7 @@ from typing import Any
 
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
-from ...golden.specification.card_order import MEMORY_UNIT, domains
+from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..frames.rendering import Rendering
 from .activity_chart import activity_chart, timeline_chart
@@ -77,7 +77,7 @@ def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
         chart=work_chart(rendering.simulation.work),
         activity_charts=_activity_charts(rendering),
         activity_kinds=ACTIVITY_KINDS,
-        groups=card_groups(rendering.configuration.cards),
+        groups=card_groups(rendering.configuration),
         display_list=_display_list_facts(rendering),
         exact=_is_exact(rendering),
     )
@@ -88,12 +88,13 @@ def _activity_charts(rendering: Rendering) -> list[str]:
     return [] if record is None else [activity_chart(record), timeline_chart(record)]
 
 
-def card_groups(cards: str) -> list[CardGroup]:
+def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
     """The cage from left to right."""
-    orphans = len(cards) - len(cards.lstrip(MEMORY_UNIT))
+    domains = organisation_of(configuration).domains
+    orphans = domains[0].first
     groups = [CardGroup(None, range(orphans))] if orphans else []
-    return groups + [CardGroup(number, range(first, first + count))
-                     for number, (first, count) in enumerate(domains(cards))]
+    return groups + [CardGroup(number, range(domain.first, domain.first + domain.units))
+                     for number, domain in enumerate(domains)]
 
 
 def _is_exact(rendering: Rendering) -> bool:

@@ -12,6 +12,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from cardcage.golden.specification.activity import Activity
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.engines.activity_record import ACTIVITY_KINDS, activity_record
 from cardcage.testbenches.frames.responses import Work
@@ -182,7 +183,7 @@ def test_coarser_and_approximate(draw, tmp_path):
 
 
 def test_card_groups():
-    groups = card_groups("MPMMPPM")
+    groups = card_groups(MachineConfiguration("MPMMPPM", 8, 8, allow_orphans=True))
     assert [(group.element, list(group.units)) for group in groups] == [
         (None, [0]), (0, [1, 2]), (1, []), (2, [3])]
     assert [group.caption for group in groups] == [
