@@ -105,8 +105,9 @@ class Machine(wiring.Component):
 
     def _connect_lines_to_all(self, m, total):
         controller, generator = self.controller, self.scan_generator
-        fixed, broadcast, scan = (wires(m, f"{name}_wires")
-                                  for name in ("total", "broadcast", "scan"))
+        fixed = wires(m, "total_wires")
+        broadcast = wires(m, "broadcast_wires")
+        scan = wires(m, "scan_wires")
         fixed.d.comb += controller.total.eq(total)
         fixed.d.comb += [card.total.eq(total) for card in self.cards]
 

@@ -71,8 +71,8 @@ class PipelinedMultiplier(wiring.Component):
         m = Module()
         addends = []
         for pair in range(self.pairs):
-            a, b = (self._cut(m, factors[pair], f"{name}_{pair}")
-                    for name, factors in (("a", self.a), ("b", self.b)))
+            a = self._cut(m, self.a[pair], f"a_{pair}")
+            b = self._cut(m, self.b[pair], f"b_{pair}")
             for i, (a_limb, a_offset) in enumerate(a):
                 for j, (b_limb, b_offset) in enumerate(b):
                     product = Signal((a_limb * b_limb).shape(), name=f"product_{pair}_{i}_{j}",

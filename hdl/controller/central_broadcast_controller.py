@@ -79,8 +79,10 @@ class CentralBroadcastController(wiring.Component):
         packet = Signal(broadcast_layout(self.configuration))
         m.d.comb += self.broadcast.packet.eq(packet)
 
-        cycles, frame_cycles, scans, owned = (
-            Signal(32, name=name) for name in ("cycles", "frame_cycles", "scans", "owned"))
+        cycles = Signal(32)
+        frame_cycles = Signal(32)
+        scans = Signal(32)
+        owned = Signal(32)
         settle = Signal(range(SETTLE_CLOCKS + 1))
         quiet = self.broadcast.done & (settle == 0)
         m.d.sync += [cycles.eq(cycles + 1), frame_cycles.eq(frame_cycles + 1)]

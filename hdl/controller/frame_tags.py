@@ -71,8 +71,10 @@ class FrameTags(wiring.Component):
         tags = range(1, 1 << self.configuration.tag_bits)  # 0 is no frame's
         lower = 1 << self.configuration.tag_bits - 1
         free = Signal(len(tags) + 1, init=sum(1 << tag for tag in tags if tag != 1))
-        stale, going, taken, swept = (Signal.like(free, name=name, init=0)
-                                      for name in ("stale", "going", "taken", "swept"))
+        stale = Signal.like(free, init=0)
+        going = Signal.like(free, init=0)
+        taken = Signal.like(free, init=0)
+        swept = Signal.like(free, init=0)
         fresh = Signal.like(self.depth, init=0)
         for tag in reversed(tags):  # the lowest one is the last assignment
             with m.If(free[tag]):

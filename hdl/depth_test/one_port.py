@@ -83,8 +83,11 @@ class OnePortDepthTest(wiring.Component):
         """Which lane has the lines to write, and which to read."""
         lines, even, odd = self.memory, *(lane.memory for lane in lanes)
         turn = Signal()  # of the two, who writes if both can
-        writes, reads = (Signal(2, name=name) for name in ("writes", "reads"))
-        writer, reader, rather = (Signal(name=name) for name in ("writer", "reader", "rather"))
+        writes = Signal(2)
+        reads = Signal(2)
+        writer = Signal()
+        reader = Signal()
+        rather = Signal()
         m.d.comb += [
             writes.eq(Cat(even.write.valid, odd.write.valid) & ~lines.scanned),
             reads.eq(Cat(even.read.valid, odd.read.valid) & ~lines.scanned),

@@ -41,13 +41,17 @@ class OnePortLane(wiring.Component):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
         layout = fragment_layout(self.configuration)
-        answer, compare, write, written = (
-            Signal(layout, name=name) for name in ("answer", "compare", "write", "written"))
-        answering, comparing, winning, has_written = (
-            Signal(name=name) for name in ("answering", "comparing", "winning", "has_written"))
+        answer = Signal(layout)
+        compare = Signal(layout)
+        write = Signal(layout)
+        written = Signal(layout)
+        answering = Signal()
+        comparing = Signal()
+        winning = Signal()
+        has_written = Signal()
         fresh = Signal()  # the answer is on the lines in this clock only
-        held, stored = (Signal(self.configuration.depth_bits, name=name)
-                        for name in ("held", "stored"))
+        held = Signal(self.configuration.depth_bits)
+        stored = Signal(self.configuration.depth_bits)
 
         # Each stage moves on when the next one is empty or moves on itself.
         write_moves = ~winning | ~memory.write_busy

@@ -39,13 +39,16 @@ class TwoPortDepthTest(wiring.Component):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
         layout = fragment_layout(self.configuration)
-        answer, compare, write, written = (
-            Signal(layout, name=name, reset_less=True)
-            for name in ("answer", "compare", "write", "written"))
-        answering, comparing, winning, was_winning = (
-            Signal(name=name) for name in ("answering", "comparing", "winning", "was_winning"))
-        stored, nearest = (Signal(self.configuration.depth_bits, name=name, reset_less=True)
-                           for name in ("stored", "nearest"))
+        answer = Signal(layout, reset_less=True)
+        compare = Signal(layout, reset_less=True)
+        write = Signal(layout, reset_less=True)
+        written = Signal(layout, reset_less=True)
+        answering = Signal()
+        comparing = Signal()
+        winning = Signal()
+        was_winning = Signal()
+        stored = Signal(self.configuration.depth_bits, reset_less=True)
+        nearest = Signal(self.configuration.depth_bits, reset_less=True)
         follows = Signal()  # compare's pixel is that of the fragment a clock ahead
 
         m.d.comb += [

@@ -78,8 +78,9 @@ class TagSweep(wiring.Component):
         left = Signal(3)  # lanes to erase
         everything = Signal()
         # Of the clock before: whether the RAM was free, was written; and whether in ERASE.
-        served, overwritten, asked = (Signal(name=name)
-                                      for name in ("served", "overwritten", "asked"))
+        served = Signal()
+        overwritten = Signal()
+        asked = Signal()
         m.d.sync += [served.eq(~self.busy), overwritten.eq(self.overwritten)]
         following = self.address + 1
         # Where the address wraps by itself, the carry tells the last word.

@@ -90,14 +90,17 @@ class BroadcastQueue(wiring.Component):
         first_column = first_owned(triangle.left, lattice.x_offset,
                                    rows_mask(lattice, configuration), square_bits)
         kept = Signal(outline_layout(configuration), reset_less=True)
-        kept_row, second_row = (Signal(row_shape(configuration), name=name, reset_less=True)
-                                for name in ("kept_row", "second_row"))
+        kept_row = Signal(row_shape(configuration), reset_less=True)
+        second_row = Signal(row_shape(configuration), reset_less=True)
         # The interpolants are the last field of a triangle: without them the rest is its start.
         outline = Value.cast(packet.body)[:outline_layout(configuration).size]
         assert len(outline) + planes_layout(configuration).size == triangle.shape().size
 
-        arrived, in_rows, in_columns, waits, drained = (
-            Signal(name=name) for name in ("arrived", "in_rows", "in_columns", "waits", "drained"))
+        arrived = Signal()
+        in_rows = Signal()
+        in_columns = Signal()
+        waits = Signal()
+        drained = Signal()
         operation = self.operations
         # A triangle's interpolants are there as long as its outline, and longer.
         m.d.sync += drained.eq((planes.level == 0) & ~self.strobe & ~arrived)

@@ -93,8 +93,9 @@ class EdgeColumns(wiring.Component):
         words = side_by_side(limb_products(m, edge.step, rows, advance=move,
                                            name=f"{name}_product"))
         start = delayed(m, edge.start, 1, f"{name}_start", enable=move)
-        first, total = (Signal(self.configuration.edge_word_bits, name=f"{name}_{part}",
-                               reset_less=True) for part in ("first", "total"))
+        word_bits = self.configuration.edge_word_bits
+        first = Signal(word_bits, name=f"{name}_first", reset_less=True)
+        total = Signal(word_bits, name=f"{name}_total", reset_less=True)
         others = [delayed(m, word, 1, f"{name}_odd", enable=move) for word in words[1:]]
         with m.If(move):
             m.d.sync += [first.eq(start + words[0]), total.eq(sum(others, first))]

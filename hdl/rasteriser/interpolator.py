@@ -114,8 +114,8 @@ class Interpolator(wiring.Component):
 
     def _value(self, m, plane, pixel, move, name):
         """The interpolant at the pixel, four moves later: products, then sums of two numbers."""
-        along, down = (limb_products(m, plane[f"step_{axis}"], pixel[f"{axis}_steps"],
-                                     advance=move, name=f"{name}_{axis}") for axis in "xy")
+        along = limb_products(m, plane.step_x, pixel.x_steps, advance=move, name=f"{name}_x")
+        down = limb_products(m, plane.step_y, pixel.y_steps, advance=move, name=f"{name}_y")
         limbs = [delayed(m, x + y, 1, f"{name}_limb_{number}", enable=move)
                  for number, (x, y) in enumerate(zip(along, down, strict=True))]
         words = side_by_side(limbs)

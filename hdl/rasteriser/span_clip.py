@@ -48,8 +48,10 @@ class SpanClip(wiring.Component):
 
         underway = Signal()  # a span of this extent has been sent
         past = (configuration.maximum_units + 1) << square_bits
-        current, x, following, end = (Signal(range(configuration.width + past), name=name)
-                                      for name in ("current", "x", "following", "end"))
+        current = Signal(range(configuration.width + past))
+        x = Signal(range(configuration.width + past))
+        following = Signal(range(configuration.width + past))
+        end = Signal(range(configuration.width + past))
         x_first = first_owned(extent.first, row_offset(lattice, extent.y, configuration),
                               lattice.x_mask, square_bits)
         m.d.comb += [x.eq(Mux(underway, current, x_first)), end.eq(extent.beyond)]
@@ -66,7 +68,9 @@ class SpanClip(wiring.Component):
             m.d.comb += following.eq(end)
             stride = lattice.x_mask + 1
 
-        move, empty, ended = (Signal(name=name) for name in ("move", "empty", "ended"))
+        move = Signal()
+        empty = Signal()
+        ended = Signal()
         m.d.comb += [
             move.eq(~self.spans.valid | self.spans.ready),
             empty.eq(extent.none | (x >= extent.beyond)),

@@ -93,8 +93,8 @@ class TriangleRows(wiring.Component):
         # The lattice of the block that is walked, in registers.
         further = Signal()  # not the domain's first block
         settled = Signal(init=1)
-        block_first, after = (Signal.like(self.first, name=name)
-                              for name in ("block_first", "after"))
+        block_first = Signal.like(self.first)
+        after = Signal.like(self.first)
         last_block = Signal()
         nobody = Signal()  # the domain has no units
         lattice = Signal(lattice_layout(configuration))
@@ -116,12 +116,18 @@ class TriangleRows(wiring.Component):
         # The triangle that is walked: this row, the one after it, and whether that is past the end.
         square_bits = configuration.square_bits
         triangle = Signal(walked_outline_layout(configuration), reset_less=True)
-        holding, ended, outside = (Signal(name=name) for name in ("holding", "ended", "outside"))
+        holding = Signal()
+        ended = Signal()
+        outside = Signal()
         finding = Signal()  # another block: its first row is not known
         priming = Signal()  # that row is known, the one after it is not
-        y, following, base, after_base = (Signal(row_shape(configuration), name=name)
-                                          for name in ("y", "following", "base", "after_base"))
-        load, walking, finishes = (Signal(name=name) for name in ("load", "walking", "finishes"))
+        y = Signal(row_shape(configuration))
+        following = Signal(row_shape(configuration))
+        base = Signal(row_shape(configuration))
+        after_base = Signal(row_shape(configuration))
+        load = Signal()
+        walking = Signal()
+        finishes = Signal()
         move = ~self.rows.valid | self.rows.ready
         m.d.comb += [
             walking.eq(holding & ~finding & ~priming),

@@ -104,7 +104,7 @@ class TriangleOutline(wiring.Component):
         m.submodules.queue = queue = fifo.SyncFIFOBuffered(width=layout.size,
                                                            depth=self.queue_depth)
         m.d.comb += [sort.triangle.eq(self.triangles.payload), pixels.grid.eq(self.grid)]
-        upper, middle, lower = (sort.vertices[name] for name in ("upper", "middle", "lower"))
+        upper, middle, lower = sort.vertices.upper, sort.vertices.middle, sort.vertices.lower
         m.d.comb += [
             pixels.top.eq(upper.y), pixels.middle.eq(middle.y), pixels.bottom.eq(lower.y),
             pixels.left.eq(sort.vertices.least_x), pixels.right.eq(sort.vertices.greatest_x),

@@ -151,9 +151,9 @@ class PlaneSetup(wiring.Component):
         ]
         steep = Signal(signed(self._slope_bits))
         m.d.comb += steep.eq(slope.sum)
-        area, upper, offset = (
-            delayed(m, getattr(self, name), at_slope, f"early_{name}")
-            for name in ("double_area", "upper", "offset"))
+        area = delayed(m, self.double_area, at_slope, "early_double_area")
+        upper = delayed(m, self.upper, at_slope, "early_upper")
+        offset = delayed(m, self.offset, at_slope, "early_offset")
         last = slot[at_slope] == Slot.START
         m.d.comb += [
             product.a[0].eq(Mux(last, area, steep)),
@@ -163,8 +163,8 @@ class PlaneSetup(wiring.Component):
         total = Signal(signed(self._area_bits + self.value_bits + 3), reset_less=True)
         with m.If(started[at_product]):
             m.d.sync += total.eq(product.sum + Mux(slot[at_product] == Slot.STEP_X, 0, total))
-        area, steep = (delayed(m, value, product.latency + 1, name)
-                       for value, name in ((area, "area"), (steep, "late_slope")))
+        area = delayed(m, area, product.latency + 1, "area")
+        steep = delayed(m, steep, product.latency + 1, "late_slope")
         sub_bits, grid = self.configuration.sub_bits, self.grid
         wide = steep.shift_left(sub_bits + 1)
         dividend = Signal.like(divider.dividend, reset_less=True)

@@ -49,7 +49,8 @@ class ResultQueue(wiring.Component):
         m = Module()
         m.submodules.queue = queue = fifo.SyncFIFOBuffered(width=self._word.size,
                                                            depth=self.depth)
-        first, second = (Signal.like(self.result, name=name) for name in ("first", "second"))
+        first = Signal.like(self.result)
+        second = Signal.like(self.result)
         count = Signal(range(3))
         m.d.comb += [
             queue.w_en.eq(self.write & (count == 2)),

@@ -186,13 +186,20 @@ class TriangleSetup(wiring.Component):
         """The factors of each slot, through a register; the same for all interpolants."""
         later = delayed(m, slot, 1, "plane_slot")
         corner_x, corner_y, _ = lengths
-        first, second = (
-            {axis: Mux(outline.clockwise, outline[f"{a}_{axis}"], outline[f"{b}_{axis}"])
-             for axis in "xy"} for a, b in (("middle", "lower"), ("lower", "middle")))
+
+        def clockwise(one, other):
+            """The way from the upper vertex to ``one`` where the triangle runs clockwise, else to
+            ``other``."""
+            return {axis: Mux(outline.clockwise, outline[f"{one}_{axis}"],
+                              outline[f"{other}_{axis}"]) for axis in "xy"}
+
+        first = clockwise("middle", "lower")
+        second = clockwise("lower", "middle")
         along_x = slot == Slot.STEP_X
         difference = signed(self.configuration.coordinate_bits + 1)
-        factor_1, factor_2, offset = (Signal(difference, name=name, reset_less=True)
-                                      for name in ("factor_1", "factor_2", "offset"))
+        factor_1 = Signal(difference, reset_less=True)
+        factor_2 = Signal(difference, reset_less=True)
+        offset = Signal(difference, reset_less=True)
         m.d.sync += [
             factor_1.eq(Mux(along_x, second["y"], -second["x"])),
             factor_2.eq(Mux(along_x, -first["y"], first["x"])),
