@@ -60,6 +60,23 @@ class CentralBroadcastController(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self.tags = FrameTags(configuration=configuration)
+        self._setup = (TriangleSetup(configuration=configuration)
+                       if configuration.setup == "hardware" else None)
+        self._packet = Signal(broadcast_layout(configuration), name="packet")
+        # Clocks since reset and since the frame start, scans since the frame start.
+        self._cycles = Signal(32, name="cycles")
+        self._frame_cycles = Signal(32, name="frame_cycles")
+        self._scans = Signal(32, name="scans")
+        # What the cage is: units that are somebody's, shares that are not as large as they must be,
+        # whether the cards can interlace so many units, and the resolution as it is reported.
+        self._owned = Signal(32, name="owned")
+        self._unequal = Signal(name="unequal")
+        self._supported = Signal(name="supported")
+        self._resolution = Signal(32, name="picture")
+        # Clocks until ``done`` counts the last strobe.
+        self._settle = Signal(range(SETTLE_CLOCKS + 1), name="settle")
+        self._backgrounds = [Signal(3 * CHANNEL_BITS, name=f"background_{place}")
+                             for place in range(2)]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -74,156 +91,195 @@ class CentralBroadcastController(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        opcode = self.commands.payload[:commands.OPCODE_BITS]
-        body = self.commands.payload[commands.BODY_OFFSET:]
-        packet = Signal(broadcast_layout(self.configuration))
-        m.d.comb += self.broadcast.packet.eq(packet)
-
-        cycles = Signal(32)
-        frame_cycles = Signal(32)
-        scans = Signal(32)
-        owned = Signal(32)
-        settle = Signal(range(SETTLE_CLOCKS + 1))
-        quiet = self.broadcast.done & (settle == 0)
-        m.d.sync += [cycles.eq(cycles + 1), frame_cycles.eq(frame_cycles + 1)]
-        with m.If(self.broadcast.strobe):
-            m.d.sync += settle.eq(SETTLE_CLOCKS)
-        with m.Elif(settle != 0):
-            m.d.sync += settle.eq(settle - 1)
-        with m.If(self.scan_start):
-            m.d.sync += scans.eq(scans + 1)
-        supported, picture = self._picture(m)
-        unequal = Signal()
-        self._count_owned(m, owned, unequal)
-        pictures = self.pictures
-        backgrounds = [Signal.like(self.background, name=f"background_{place}")
-                       for place in range(2)]
+        m.d.comb += self.broadcast.packet.eq(self._packet)
+        self._count(m)
+        self._picture(m)
+        self._count_owned(m)
         self._tags(m)
-        m.d.comb += self.background.eq(Mux(pictures.front, *reversed(backgrounds)))
-
-        def announce(operation, then=None, *, when=1):
-            """Strobe the packet as soon as all are ready."""
-            m.d.comb += packet.operation.eq(operation)
-            with m.If(self.broadcast.ready & when):
-                m.d.comb += self.broadcast.strobe.eq(1)
-                if then is not None:
-                    m.next = then
-
-        def respond(kind, value, then):
-            """The controller's own response; the chain waits meanwhile."""
-            m.d.comb += [
-                self.responses.valid.eq(1),
-                self.responses.payload.kind.eq(kind),
-                self.responses.payload.value.eq(value),
-                self.right.response.ready.eq(0),
-            ]
-            with m.If(self.responses.ready):
-                m.next = then
-
-        in_turn = C(1)
-        if self.configuration.setup == "hardware":
-            m.submodules.setup = setup = TriangleSetup(configuration=self.configuration)
-            in_turn = (opcode == Opcode.TRIANGLE) | ~setup.busy
-            m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(body)]
-            with m.If(setup.triangles.valid):
-                m.d.comb += [packet.body.draw.eq(setup.triangles.payload),
-                             setup.triangles.ready.eq(self.broadcast.ready)]
-                announce(Operation.DRAW)
+        m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
+        if self._setup is not None:
+            self._set_up(m, self._setup)
         if self.configuration.observe:
-            offered = self.commands.valid & ((opcode == Opcode.TRIANGLE)
-                                             | (opcode == Opcode.PREPARED_TRIANGLE))
-            m.d.comb += self.more.eq(
-                offered | (setup.busy if self.configuration.setup == "hardware" else 0))
-
+            self._observe(m)
         # Unless the controller itself speaks, the processing elements do.
         m.d.comb += [
             self.responses.valid.eq(self.right.response.valid),
             self.responses.payload.eq(self.right.response.payload),
             self.right.response.ready.eq(self.responses.ready),
         ]
-
         with m.FSM():
-            with m.State("SURVEY"):
-                announce(Operation.SURVEY, "SURVEYING")
-            with m.State("SURVEYING"), m.If(quiet):
-                m.next = "REPORT_UNITS"
-            with m.State("REPORT_UNITS"):
-                respond(ResponseKind.UNITS, Cat(self.total | C(0, 16), owned[:16]),
-                        "CHECK_UNITS")
-            with m.State("CHECK_UNITS"):
-                m.next = "INITIALISE"
-                with m.If(~supported | unequal):
-                    m.next = "REFUSE"
-            with m.State("INITIALISE"):
-                m.d.comb += pictures.initialise.eq(1)
-                m.next = "INITIALISING"
-            with m.State("INITIALISING"), m.If(pictures.swept):
-                booted = Signal.like(cycles)
-                m.d.sync += booted.eq(cycles)
-                m.next = "REPORT_PICTURE"
-            with m.State("REPORT_PICTURE"):
-                respond(ResponseKind.PICTURE, picture, "REPORT_BOOTED")
-            with m.State("REPORT_BOOTED"):
-                respond(ResponseKind.BOOTED, booted, "COMMAND")
-
-            with m.State("COMMAND"), m.If(self.commands.valid & in_turn):
-                m.d.comb += self.commands.ready.eq(self.broadcast.ready)
-                with m.Switch(opcode):
-                    if self.configuration.setup == "hardware":
-                        with m.Case(Opcode.TRIANGLE):
-                            m.d.comb += [setup.vertices.valid.eq(1),
-                                         self.commands.ready.eq(setup.vertices.ready)]
-                    with m.Case(Opcode.PREPARED_TRIANGLE):
-                        m.d.comb += packet.body.draw.eq(body)
-                        announce(Operation.DRAW)
-                    with m.Case(Opcode.FRAME_START):
-                        m.d.comb += self.commands.ready.eq(1)
-                        m.d.sync += [frame_cycles.eq(0), scans.eq(self.scan_start)]
-                        for place, background in enumerate(backgrounds):
-                            with m.If(pictures.front != place):
-                                m.d.sync += background.eq(body)
-                        m.next = "START_FRAME"
-                    with m.Case(Opcode.FRAME_END):
-                        m.d.comb += self.commands.ready.eq(1)
-                        m.next = "DRAWING"
-                    with m.Case(Opcode.READ_DEPTH):
-                        announce(Operation.READ_DEPTH, "ANSWERING", when=quiet)
-                        m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
-                    with m.Case(Opcode.READ_COUNTERS):
-                        announce(Operation.READ_COUNTERS, "ANSWERING", when=quiet)
-                        m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
-                    with m.Default():
-                        m.d.comb += self.commands.ready.eq(1)
-                        m.next = "UNKNOWN"
-            with m.State("START_FRAME"):
-                # What is still drawn belongs to the old tag, and so waits for the new one.
-                announce(Operation.FRAME_START, "COMMAND", when=quiet & self.tags.ready)
-                m.d.comb += self.tags.start.eq(self.broadcast.strobe)
-            with m.State("UNKNOWN"):
-                respond(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
-            with m.State("ANSWERING"), m.If(quiet):
-                m.next = "COMMAND"
-            with m.State("DRAWING"), m.If(quiet):
-                drawn = Signal.like(frame_cycles)
-                m.d.sync += drawn.eq(frame_cycles)
-                m.next = "REPORT_DRAWN"
-            with m.State("REPORT_DRAWN"):
-                respond(ResponseKind.FRAME_DRAWN, drawn, "SWAP")
-            with m.State("SWAP"), m.If(self.scan_start):
-                # Every pixel of the scan that begins here is fetched after this edge.
-                shown = Signal.like(scans)
-                m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(scans)]
-                m.next = "REPORT_SHOWN"
-            with m.State("REPORT_SHOWN"):
-                respond(ResponseKind.FRAME_SHOWN, shown, "COMMAND")
-
-            with m.State("REFUSE"):
-                respond(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, "REFUSED")
-            with m.State("REFUSED"):
-                m.d.comb += self.commands.ready.eq(1)
-                with m.If(self.commands.valid):
-                    m.next = "REFUSE"
+            self._boot(m)
+            with m.State("COMMAND"), m.If(self.commands.valid & self._in_turn):
+                self._command(m)
+            self._end_commands(m)
+            self._show(m)
+            self._refuse(m)
         return m
+
+    # What is used in many places.
+
+    @property
+    def _opcode(self):
+        return self.commands.payload[:commands.OPCODE_BITS]
+
+    @property
+    def _body(self):
+        return self.commands.payload[commands.BODY_OFFSET:]
+
+    @property
+    def _quiet(self):
+        """All that was announced is done."""
+        return self.broadcast.done & (self._settle == 0)
+
+    @property
+    def _in_turn(self):
+        """The command need not wait for triangles that are still being set up."""
+        if self._setup is None:
+            return C(1)
+        return (self._opcode == Opcode.TRIANGLE) | ~self._setup.busy
+
+    def _announce(self, m, operation, then=None, *, when=1):
+        """Strobe the packet as soon as all are ready."""
+        m.d.comb += self._packet.operation.eq(operation)
+        with m.If(self.broadcast.ready & when):
+            m.d.comb += self.broadcast.strobe.eq(1)
+            if then is not None:
+                m.next = then
+
+    def _respond(self, m, kind, value, then):
+        """The controller's own response; the chain waits meanwhile."""
+        m.d.comb += [
+            self.responses.valid.eq(1),
+            self.responses.payload.kind.eq(kind),
+            self.responses.payload.value.eq(value),
+            self.right.response.ready.eq(0),
+        ]
+        with m.If(self.responses.ready):
+            m.next = then
+
+    # What goes on beside the commands.
+
+    def _count(self, m):
+        """Clocks, scans, and clocks until a strobe shows in ``done``."""
+        m.d.sync += [self._cycles.eq(self._cycles + 1),
+                     self._frame_cycles.eq(self._frame_cycles + 1)]
+        with m.If(self.broadcast.strobe):
+            m.d.sync += self._settle.eq(SETTLE_CLOCKS)
+        with m.Elif(self._settle != 0):
+            m.d.sync += self._settle.eq(self._settle - 1)
+        with m.If(self.scan_start):
+            m.d.sync += self._scans.eq(self._scans + 1)
+
+    def _set_up(self, m, setup):
+        """Triangles are announced as soon as they are set up."""
+        m.submodules.setup = setup
+        m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self._body)]
+        with m.If(setup.triangles.valid):
+            m.d.comb += [self._packet.body.draw.eq(setup.triangles.payload),
+                         setup.triangles.ready.eq(self.broadcast.ready)]
+            self._announce(m, Operation.DRAW)
+
+    def _observe(self, m):
+        offered = self.commands.valid & ((self._opcode == Opcode.TRIANGLE)
+                                         | (self._opcode == Opcode.PREPARED_TRIANGLE))
+        m.d.comb += self.more.eq(offered | (0 if self._setup is None else self._setup.busy))
+
+    # The states.
+
+    def _boot(self, m):
+        """From reset to the first command."""
+        with m.State("SURVEY"):
+            self._announce(m, Operation.SURVEY, "SURVEYING")
+        with m.State("SURVEYING"), m.If(self._quiet):
+            m.next = "REPORT_UNITS"
+        with m.State("REPORT_UNITS"):
+            self._respond(m, ResponseKind.UNITS, Cat(self.total | C(0, 16), self._owned[:16]),
+                          "CHECK_UNITS")
+        with m.State("CHECK_UNITS"):
+            m.next = "INITIALISE"
+            with m.If(~self._supported | self._unequal):
+                m.next = "REFUSE"
+        with m.State("INITIALISE"):
+            m.d.comb += self.pictures.initialise.eq(1)
+            m.next = "INITIALISING"
+        with m.State("INITIALISING"), m.If(self.pictures.swept):
+            booted = Signal.like(self._cycles, name="booted")
+            m.d.sync += booted.eq(self._cycles)
+            m.next = "REPORT_PICTURE"
+        with m.State("REPORT_PICTURE"):
+            self._respond(m, ResponseKind.PICTURE, self._resolution, "REPORT_BOOTED")
+        with m.State("REPORT_BOOTED"):
+            self._respond(m, ResponseKind.BOOTED, booted, "COMMAND")
+
+    def _command(self, m):
+        """A command is offered, and may be taken."""
+        m.d.comb += self.commands.ready.eq(self.broadcast.ready)
+        with m.Switch(self._opcode):
+            if self._setup is not None:
+                with m.Case(Opcode.TRIANGLE):
+                    m.d.comb += [self._setup.vertices.valid.eq(1),
+                                 self.commands.ready.eq(self._setup.vertices.ready)]
+            with m.Case(Opcode.PREPARED_TRIANGLE):
+                m.d.comb += self._packet.body.draw.eq(self._body)
+                self._announce(m, Operation.DRAW)
+            with m.Case(Opcode.FRAME_START):
+                m.d.comb += self.commands.ready.eq(1)
+                m.d.sync += [self._frame_cycles.eq(0), self._scans.eq(self.scan_start)]
+                for place, background in enumerate(self._backgrounds):
+                    with m.If(self.pictures.front != place):
+                        m.d.sync += background.eq(self._body)
+                m.next = "START_FRAME"
+            with m.Case(Opcode.FRAME_END):
+                m.d.comb += self.commands.ready.eq(1)
+                m.next = "DRAWING"
+            for opcode, operation in ((Opcode.READ_DEPTH, Operation.READ_DEPTH),
+                                      (Opcode.READ_COUNTERS, Operation.READ_COUNTERS)):
+                with m.Case(opcode):
+                    self._announce(m, operation, "ANSWERING", when=self._quiet)
+                    m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
+            with m.Default():
+                m.d.comb += self.commands.ready.eq(1)
+                m.next = "UNKNOWN"
+
+    def _end_commands(self, m):
+        """The states after a command that is not done when it is taken."""
+        with m.State("START_FRAME"):
+            # What is still drawn belongs to the old tag, and so waits for the new one.
+            self._announce(m, Operation.FRAME_START, "COMMAND",
+                           when=self._quiet & self.tags.ready)
+            m.d.comb += self.tags.start.eq(self.broadcast.strobe)
+        with m.State("UNKNOWN"):
+            self._respond(m, ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
+        with m.State("ANSWERING"), m.If(self._quiet):
+            m.next = "COMMAND"
+
+    def _show(self, m):
+        """From the end of a frame's commands until its picture is shown."""
+        pictures = self.pictures
+        with m.State("DRAWING"), m.If(self._quiet):
+            drawn = Signal.like(self._frame_cycles, name="drawn")
+            m.d.sync += drawn.eq(self._frame_cycles)
+            m.next = "REPORT_DRAWN"
+        with m.State("REPORT_DRAWN"):
+            self._respond(m, ResponseKind.FRAME_DRAWN, drawn, "SWAP")
+        with m.State("SWAP"), m.If(self.scan_start):
+            # Every pixel of the scan that begins here is fetched after this edge.
+            shown = Signal.like(self._scans, name="shown")
+            m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(self._scans)]
+            m.next = "REPORT_SHOWN"
+        with m.State("REPORT_SHOWN"):
+            self._respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
+
+    def _refuse(self, m):
+        """The machine does not draw: an error at boot and in answer to every command."""
+        with m.State("REFUSE"):
+            self._respond(m, ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, "REFUSED")
+        with m.State("REFUSED"):
+            m.d.comb += self.commands.ready.eq(1)
+            with m.If(self.commands.valid):
+                m.next = "REFUSE"
+
+    # The lines to the memory units, and what is known of them.
 
     def _tags(self, m):
         """What the memory units are told of the frames' tags."""
@@ -239,16 +295,13 @@ class CentralBroadcastController(wiring.Component):
 
     def _picture(self, m):
         """Whether the number of units is one the cards can interlace, and the resolution."""
-        supported = Signal()
-        picture = Signal(32)
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):
-                    m.d.comb += [supported.eq(1),
-                                 picture.eq(interlace.height << 16 | interlace.width)]
-        return supported, picture
+                    m.d.comb += [self._supported.eq(1),
+                                 self._resolution.eq(interlace.height << 16 | interlace.width)]
 
-    def _count_owned(self, m, owned, unequal):
+    def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
 
         Squares are interlaced by equal shares only.
@@ -258,7 +311,7 @@ class CentralBroadcastController(wiring.Component):
         units = response.payload.value[:16]
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
-            m.d.sync += owned.eq(owned + units)
+            m.d.sync += self._owned.eq(self._owned + units)
             if configuration.square_bits:
                 with m.If(units != 1 << configuration.share_bits):
-                    m.d.sync += unequal.eq(1)
+                    m.d.sync += self._unequal.eq(1)
