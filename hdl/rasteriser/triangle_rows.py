@@ -73,6 +73,33 @@ class TriangleRows(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        unit, row = configuration.id_bits, row_shape(configuration)
+        # The block that is walked.
+        self._lattice = Signal(lattice_layout(configuration), name="lattice")
+        self._settled = Signal(init=1, name="settled")  # the lattice is that of the block
+        self._further = Signal(name="further")  # it is not the domain's first one
+        self._block_first = Signal(unit, name="block_first")  # where it begins, if so
+        self._after = Signal(unit, name="after")  # where the next one begins
+        self._last_block = Signal(name="last_block")
+        self._nobody = Signal(name="nobody")  # the domain has no units
+        # The triangle that is walked.
+        self._triangle = Signal(walked_outline_layout(configuration), name="triangle",
+                                reset_less=True)
+        self._holding = Signal(name="holding")  # there is one
+        self._finding = Signal(name="finding")  # another block: its first row is not known
+        self._priming = Signal(name="priming")  # that row is known, the one after it is not
+        self._outside = Signal(name="outside")  # the block has no row of the triangle
+        # Its rows: this one, the next one, and whether that is past the end; the one after
+        # ``base``, which is whichever of the two is known last.
+        self._y = Signal(row, name="y")
+        self._following = Signal(row, name="following")
+        self._ended = Signal(name="ended")
+        self._base = Signal(row, name="base")
+        self._after_base = Signal(row, name="after_base")
+        # In this clock: a triangle may be taken; a row is known; it is the triangle's last one.
+        self._load = Signal(name="load")
+        self._walking = Signal(name="walking")
+        self._finishes = Signal(name="finishes")
         super().__init__({
             "total": In(configuration.id_bits),
             "first": In(configuration.id_bits),
@@ -87,107 +114,66 @@ class TriangleRows(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        configuration = self.configuration
-        coming, row = self.triangles.payload, self.rows.payload
-
-        # The lattice of the block that is walked, in registers.
-        further = Signal()  # not the domain's first block
-        settled = Signal(init=1)
-        block_first = Signal.like(self.first)
-        after = Signal.like(self.first)
-        last_block = Signal()
-        nobody = Signal()  # the domain has no units
-        lattice = Signal(lattice_layout(configuration))
-        m.submodules.block = block = LatticeBlock(configuration=configuration)
-        m.d.comb += [
-            block.total.eq(self.total),
-            block.first.eq(Mux(further, block_first, self.first)),
-            block.end.eq(self.end),
-            self.lattice.eq(lattice),
-            self.whole.eq(settled & last_block & ~further),
-        ]
-        m.d.sync += [
-            settled.eq(1),
-            lattice.eq(block.lattice),
-            after.eq(block.after),
-            nobody.eq(self.first == self.end),
-        ]
-
-        # The triangle that is walked: this row, the one after it, and whether that is past the end.
-        square_bits = configuration.square_bits
-        triangle = Signal(walked_outline_layout(configuration), reset_less=True)
-        holding = Signal()
-        ended = Signal()
-        outside = Signal()
-        finding = Signal()  # another block: its first row is not known
-        priming = Signal()  # that row is known, the one after it is not
-        y = Signal(row_shape(configuration))
-        following = Signal(row_shape(configuration))
-        base = Signal(row_shape(configuration))
-        after_base = Signal(row_shape(configuration))
-        load = Signal()
-        walking = Signal()
-        finishes = Signal()
         move = ~self.rows.valid | self.rows.ready
-        m.d.comb += [
-            walking.eq(holding & ~finding & ~priming),
-            finishes.eq(nobody | (ended & last_block)),
-            load.eq(settled & ~further & (~holding | (move & walking & finishes))),
-            self.triangles.ready.eq(load),
-            base.eq(Mux(priming, y, following)),
-            after_base.eq(next_owned(base, lattice.y_mask, square_bits)),
-        ]
+        after = self._follow_block(m)
+        self._find_row_after(m, move)
         with m.If(move):
-            m.d.sync += self.rows.valid.eq(walking & (finishes | ~outside))
-            self._row(m, triangle, y, row)
-            m.d.sync += [
-                row.lattice.eq(lattice),
-                row.none.eq(nobody | outside),
-                row.last.eq(finishes),
-            ]
-            with m.If(walking):
-                m.d.sync += y.eq(following)
-                with m.If(finishes):
-                    m.d.sync += holding.eq(0)
-        with m.If(priming | (move & walking)):
-            m.d.sync += [following.eq(after_base), ended.eq(after_base >= triangle.bottom)]
-        with m.If(load & self.triangles.valid):
-            m.d.sync += [
-                holding.eq(1),
-                triangle.eq(coming),
-                y.eq(coming.first_row),
-                following.eq(coming.second_row),
-                ended.eq(coming.one_row),
-            ]
-        if configuration.aligned_domains:
-            m.d.comb += last_block.eq(1)
+            self._send_row(m)
+            with m.If(self._walking):
+                m.d.sync += self._y.eq(self._following)
+                with m.If(self._finishes):
+                    m.d.sync += self._holding.eq(0)
+        with m.If(self._priming | (move & self._walking)):
+            m.d.sync += [self._following.eq(self._after_base),
+                         self._ended.eq(self._after_base >= self._triangle.bottom)]
+        self._take_triangle(m)
+        if self.configuration.aligned_domains:
+            m.d.comb += self._last_block.eq(1)
         else:
-            m.d.sync += last_block.eq(block.after == self.end)
-            with m.If(finding & settled):
-                m.d.sync += [
-                    y.eq(first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)),
-                    finding.eq(0),
-                    priming.eq(1),
-                ]
-            with m.If(priming):
-                m.d.sync += [priming.eq(0), outside.eq(y >= triangle.bottom)]
-            with m.If(move & walking):
-                with m.If(finishes):
-                    m.d.sync += [further.eq(0), settled.eq(~further)]
-                with m.Elif(ended):
-                    m.d.sync += [finding.eq(1), further.eq(1), settled.eq(0), block_first.eq(after)]
-            with m.If(load & self.triangles.valid):
-                # The first row that came was that of any of the blocks.
-                m.d.sync += [outside.eq(0), finding.eq(~last_block & ~nobody)]
+            m.d.sync += self._last_block.eq(after == self.end)
+            self._go_from_block_to_block(m, move)
         m.d.comb += [
-            self.busy.eq(holding | self.rows.valid),
-            self.preparing.eq(finding | priming | ~settled),
+            self.busy.eq(self._holding | self.rows.valid),
+            self.preparing.eq(self._finding | self._priming | ~self._settled),
         ]
         return m
 
-    def _row(self, m, triangle, y, row):
+    def _follow_block(self, m):
+        """The lattice of the block that is walked, in registers.  Returns the unit after it."""
+        m.submodules.block = block = LatticeBlock(configuration=self.configuration)
+        m.d.comb += [
+            block.total.eq(self.total),
+            block.first.eq(Mux(self._further, self._block_first, self.first)),
+            block.end.eq(self.end),
+            self.lattice.eq(self._lattice),
+            self.whole.eq(self._settled & self._last_block & ~self._further),
+        ]
+        m.d.sync += [
+            self._settled.eq(1),
+            self._lattice.eq(block.lattice),
+            self._after.eq(block.after),
+            self._nobody.eq(self.first == self.end),
+        ]
+        return block.after
+
+    def _find_row_after(self, m, move):
+        """The row after the next one, and what happens in this clock."""
+        m.d.comb += [
+            self._walking.eq(self._holding & ~self._finding & ~self._priming),
+            self._finishes.eq(self._nobody | (self._ended & self._last_block)),
+            self._load.eq(self._settled & ~self._further
+                          & (~self._holding | (move & self._walking & self._finishes))),
+            self.triangles.ready.eq(self._load),
+            self._base.eq(Mux(self._priming, self._y, self._following)),
+            self._after_base.eq(next_owned(self._base, self._lattice.y_mask,
+                                           self.configuration.square_bits)),
+        ]
+
+    def _send_row(self, m):
+        row, triangle, y = self.rows.payload, self._triangle, self._y
         in_upper = y < triangle.middle
         m.d.sync += [
+            self.rows.valid.eq(self._walking & (self._finishes | ~self._outside)),
             row.y.eq(y),
             row.rows.eq(y - triangle.top),
             row.short_rows.eq(y - Mux(in_upper, triangle.top, triangle.middle)),
@@ -195,4 +181,41 @@ class TriangleRows(wiring.Component):
             row.long.eq(triangle.long),
             row.short.eq(Mux(in_upper, triangle.upper, triangle.lower)),
             row.left.eq(triangle.left),
+            row.lattice.eq(self._lattice),
+            row.none.eq(self._nobody | self._outside),
+            row.last.eq(self._finishes),
         ]
+
+    def _take_triangle(self, m):
+        coming = self.triangles.payload
+        with m.If(self._load & self.triangles.valid):
+            m.d.sync += [
+                self._holding.eq(1),
+                self._triangle.eq(coming),
+                self._y.eq(coming.first_row),
+                self._following.eq(coming.second_row),
+                self._ended.eq(coming.one_row),
+            ]
+
+    def _go_from_block_to_block(self, m, move):
+        """Behind a block's last row: its neighbour's lattice, first row, and the row after it."""
+        triangle, lattice = self._triangle, self._lattice
+        with m.If(self._finding & self._settled):
+            m.d.sync += [
+                self._y.eq(first_owned(triangle.top, lattice.y_offset, lattice.y_mask,
+                                       self.configuration.square_bits)),
+                self._finding.eq(0),
+                self._priming.eq(1),
+            ]
+        with m.If(self._priming):
+            m.d.sync += [self._priming.eq(0), self._outside.eq(self._y >= triangle.bottom)]
+        with m.If(move & self._walking):
+            with m.If(self._finishes):
+                m.d.sync += [self._further.eq(0), self._settled.eq(~self._further)]
+            with m.Elif(self._ended):
+                m.d.sync += [self._finding.eq(1), self._further.eq(1), self._settled.eq(0),
+                             self._block_first.eq(self._after)]
+        with m.If(self._load & self.triangles.valid):
+            # The first row that came with the triangle is the first owned one of some block, not
+            # of this one.
+            m.d.sync += [self._outside.eq(0), self._finding.eq(~self._last_block & ~self._nobody)]
