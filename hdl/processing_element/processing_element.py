@@ -68,6 +68,17 @@ class ProcessingElement(wiring.Component):
         self.configuration = configuration
         kind = {1: OnePortDepthTest, 2: TwoPortDepthTest}[configuration.memory_ports]
         self.depth_test = kind(configuration=configuration)
+        self._queue = BroadcastQueue(configuration=configuration)
+        self._control = ProcessingElementControl(configuration=configuration)
+        self._rasteriser = TriangleSpans(configuration=configuration)
+        self._spans = fifo.SyncFIFO(width=span_layout(configuration).size, depth=SPANS_WAITING)
+        self._stepper = FragmentStepper(configuration=configuration)
+        self._interpolator = Interpolator(configuration=configuration)
+        self._survey = Survey(configuration=configuration)
+        self._read_back = DepthReadBack(configuration=configuration)
+        self._link = ResponseLink()
+        self._picture = PixelAddress(configuration=configuration)
+        self._selector = MemoryBusSelector(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
@@ -83,123 +94,137 @@ class ProcessingElement(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        configuration = self.configuration
-        m.submodules.queue = queue = BroadcastQueue(configuration=configuration)
-        m.submodules.control = control = ProcessingElementControl(configuration=configuration)
-        m.submodules.walker = walker = TriangleSpans(configuration=configuration)
-        m.submodules.spans = spans = fifo.SyncFIFO(
-            width=span_layout(configuration).size, depth=SPANS_WAITING)
-        m.submodules.stepper = stepper = FragmentStepper(configuration=configuration)
-        m.submodules.interpolator = interpolator = Interpolator(configuration=configuration)
-        m.submodules.depth_test = depth_test = self.depth_test
-        m.submodules.survey = survey = Survey(configuration=configuration)
-        m.submodules.read_back = read_back = DepthReadBack(configuration=configuration)
-        m.submodules.link = link = ResponseLink()
-        m.submodules.picture = picture = PixelAddress(configuration=configuration)
+        m.submodules.queue = self._queue
+        m.submodules.control = self._control
+        m.submodules.walker = self._rasteriser
+        m.submodules.spans = self._spans
+        m.submodules.stepper = self._stepper
+        m.submodules.interpolator = self._interpolator
+        m.submodules.depth_test = self.depth_test
+        m.submodules.survey = self._survey
+        m.submodules.read_back = self._read_back
+        m.submodules.link = self._link
+        m.submodules.picture = self._picture
+        self._connect_broadcast(wires(m, "operation_wires"))
+        self._connect_drawing(m, wires(m, "drawing_wires"))
+        self._connect_domain(wires(m, "domain_wires"))
+        self._connect_services(wires(m, "service_wires"))
+        m.submodules.selector = self._selector
+        self._connect_memory_bus(wires(m, "line_wires"))
+        self._count(m)
+        if self.configuration.observe:
+            self._observe(m)
+        self._connect_responses(wires(m, "response_wires"))
+        return m
 
-        # From the broadcast to the operations.
-        operations = wires(m, "operation_wires")
-        operations.d.comb += [
+    def _connect_broadcast(self, m):
+        """From the broadcast to the operations."""
+        queue, rasteriser = self._queue, self._rasteriser
+        m.d.comb += [
             queue.strobe.eq(self.broadcast.strobe),
             queue.packet.eq(self.broadcast.packet),
             self.broadcast.ready.eq(queue.ready),
-            queue.lattice.eq(walker.lattice),
-            queue.whole.eq(walker.whole),
+            queue.lattice.eq(rasteriser.lattice),
+            queue.whole.eq(rasteriser.whole),
         ]
-        wiring.connect(operations, queue.operations, control.operations)
+        wiring.connect(m, queue.operations, self._control.operations)
 
-        # The drawing pipeline.
-        pipeline = wires(m, "drawing_wires")
-        # Said a clock ahead, with a place for the span of this clock: many wait for it.
+    def _connect_drawing(self, m, pipeline):
+        """The pipeline from the queue to the depth test; connections in ``pipeline``."""
+        queue, rasteriser, spans = self._queue, self._rasteriser, self._spans
+        stepper, interpolator, depth_test = self._stepper, self._interpolator, self.depth_test
+        # `room` is registered because it fans out widely, so one place stays free for the span
+        # arriving now.
         room = Signal()
         m.d.sync += room.eq(spans.level < SPANS_WAITING - 1)
         pipeline.d.comb += [
-            spans.w_en.eq(walker.spans.valid & room),
-            spans.w_data.eq(walker.spans.payload),
-            walker.spans.ready.eq(room),
+            spans.w_en.eq(rasteriser.spans.valid & room),
+            spans.w_data.eq(rasteriser.spans.payload),
+            rasteriser.spans.ready.eq(room),
             stepper.spans.valid.eq(spans.r_rdy),
             stepper.spans.payload.eq(spans.r_data),
             spans.r_en.eq(stepper.spans.ready),
         ]
-        # A clock late, and from the first clock on in which a triangle comes.
+        # `drawing` is a clock late; the queue says that a triangle comes as early as it can, so
+        # that it is high from the clock after that on.
         drawing = Signal()
-        m.d.sync += drawing.eq(queue.triangles.valid | walker.busy | (spans.level != 0)
+        m.d.sync += drawing.eq(queue.triangles.valid | rasteriser.busy | (spans.level != 0)
                                | stepper.busy | interpolator.busy | depth_test.busy)
-        m.d.comb += control.drawing.eq(drawing)
-        wiring.connect(pipeline, queue.triangles, walker.triangles)
+        m.d.comb += self._control.drawing.eq(drawing)
+        wiring.connect(pipeline, queue.triangles, rasteriser.triangles)
         wiring.connect(pipeline, queue.planes, interpolator.planes)
         wiring.connect(pipeline, stepper.pixels, interpolator.pixels)
         wiring.connect(pipeline, interpolator.fragments, depth_test.fragments)
 
-        # The domain: first unit from the lines, upper end from the survey.
+    def _connect_domain(self, m):
+        """First unit from the lines, upper end from the survey."""
+        rasteriser, interpolator, picture = self._rasteriser, self._interpolator, self._picture
+        survey, read_back, control = self._survey, self._read_back, self._control
         first, end = self.left.id, survey.end
-        domain = wires(m, "domain_wires")
-        domain.d.comb += [self.right.id.eq(first), picture.total.eq(self.total),
-                          walker.width.eq(picture.width)]
-        for part in (walker, interpolator, survey):
-            domain.d.comb += part.total.eq(self.total)
-        for part in (walker, survey, read_back, control):
-            domain.d.comb += part.first.eq(first)
-        for part in (walker, read_back, control):
-            domain.d.comb += part.end.eq(end)
-        domain.d.comb += read_back.last_word.eq(picture.last_word)
+        m.d.comb += [self.right.id.eq(first), picture.total.eq(self.total),
+                     rasteriser.width.eq(picture.width)]
+        m.d.comb += [part.total.eq(self.total) for part in (rasteriser, interpolator, survey)]
+        m.d.comb += [part.first.eq(first) for part in (rasteriser, survey, read_back, control)]
+        m.d.comb += [part.end.eq(end) for part in (rasteriser, read_back, control)]
+        m.d.comb += read_back.last_word.eq(picture.last_word)
 
-        # The services, and who has the memory lines.
-        service = wires(m, "service_wires")
-        for name, part in (("survey", survey), ("read_back", read_back)):
-            service.d.comb += [
+    def _connect_services(self, m):
+        """Survey and read-back, and whether one of them has the memory bus."""
+        control, selector = self._control, self._selector
+        for name, part in (("survey", self._survey), ("read_back", self._read_back)):
+            m.d.comb += [
                 part.start.eq(getattr(control, f"{name}_start")),
                 getattr(control, f"{name}_done").eq(part.done),
             ]
-        wiring.connect(service, read_back.depths, control.depths)
-        m.submodules.selector = selector = MemoryBusSelector(configuration=configuration)
-        service.d.comb += [selector.surveying.eq(control.surveying),
-                           selector.reading.eq(control.reading)]
-        lines = wires(m, "line_wires")
-        for name, part in (("survey", survey), ("read_back", read_back),
-                           ("depth_test", depth_test)):
-            wiring.connect(lines, part.memory, getattr(selector, name))
-        wiring.connect(lines, selector.lines, wiring.flipped(self.right.lines))
-        self._count(m, control, depth_test)
-        if configuration.observe:
-            self._observe(m, control, walker, depth_test)
+        wiring.connect(m, self._read_back.depths, control.depths)
+        m.d.comb += [selector.surveying.eq(control.surveying),
+                     selector.reading.eq(control.reading)]
 
-        responses = wires(m, "response_wires")
-        wiring.connect(responses, control.responses, link.own)
-        wiring.connect(responses, wiring.flipped(self.right.response), link.right)
-        wiring.connect(responses, link.left, wiring.flipped(self.left.response))
+    def _connect_memory_bus(self, m):
+        selector = self._selector
+        wiring.connect(m, self._survey.memory, selector.survey)
+        wiring.connect(m, self._read_back.memory, selector.read_back)
+        wiring.connect(m, self.depth_test.memory, selector.depth_test)
+        wiring.connect(m, selector.lines, wiring.flipped(self.right.lines))
+
+    def _connect_responses(self, m):
+        """The chain of responses; nothing from the right passes while this card has work."""
+        queue, control, link = self._queue, self._control, self._link
+        wiring.connect(m, control.responses, link.own)
+        wiring.connect(m, wiring.flipped(self.right.response), link.right)
+        wiring.connect(m, link.left, wiring.flipped(self.left.response))
         quiet = queue.empty & control.idle
-        responses.d.comb += [
+        m.d.comb += [
             link.own_turn.eq(~quiet),
             self.broadcast.done.eq(quiet & ~link.left.valid),
         ]
-        return m
 
-    def _count(self, m, control, depth_test):
+    def _count(self, m):
         """Work since the frame start."""
+        control, arriving = self._control, self.depth_test.fragments
         fragments = Signal(COUNTER_BITS)
         busy_cycles = Signal(COUNTER_BITS)
-        taken = depth_test.fragments.valid & depth_test.fragments.ready
         m.d.sync += [
-            fragments.eq(fragments + taken),
+            fragments.eq(fragments + (arriving.valid & arriving.ready)),
             busy_cycles.eq(busy_cycles + control.drawing),
         ]
         with m.If(control.frame_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]
         m.d.comb += [control.fragments.eq(fragments), control.busy_cycles.eq(busy_cycles)]
 
-    def _observe(self, m, control, walker, depth_test):
-        """Listens to the walker and the depth test, some clocks further on."""
+    def _observe(self, m):
+        """Listens to the rasteriser and, some clocks further on, to the depth test."""
+        rasteriser, control = self._rasteriser, self._control
         m.submodules.observer = observer = ElementActivity(
             delay=SPANS_LATENCY + FragmentStepper.latency + Interpolator.latency)
-        fragments, lines = depth_test.fragments, self.right.lines
+        fragments, scanned = self.depth_test.fragments, self.right.lines.scanned
         m.d.comb += [
             observer.offered.eq(fragments.valid),
             observer.taken.eq(fragments.valid & fragments.ready),
-            observer.scanned.eq(lines.scanned.bit_select(fragments.payload.unit[0], 1)),
-            observer.preparing.eq(walker.preparing),
-            observer.empty_row.eq(walker.empty_row),
-            observer.walking.eq(walker.busy),
+            observer.scanned.eq(scanned.bit_select(fragments.payload.unit[0], 1)),
+            observer.preparing.eq(rasteriser.preparing),
+            observer.empty_row.eq(rasteriser.empty_row),
+            observer.walking.eq(rasteriser.busy),
             observer.service.eq(~control.idle & ~control.drawing),
             self.activity.eq(observer.activity),
         ]
