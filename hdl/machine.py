@@ -18,7 +18,18 @@ from .processing_element.processing_element import ProcessingElement
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
-__all__ = ["Machine"]
+__all__ = ["BOARDS", "CARDS", "Machine"]
+
+#: Every kind of board, by the name of its Verilog module.
+BOARDS: dict[str, type[wiring.Component]] = {
+    "central_broadcast_controller": CentralBroadcastController,
+    "processing_element": ProcessingElement,
+    "memory_unit": MemoryUnit,
+    "video_scan_generator": VideoScanGenerator,
+}
+
+#: The boards that slots can hold, by their letter in the card order.
+CARDS = {PROCESSING_ELEMENT: "processing_element", MEMORY_UNIT: "memory_unit"}
 
 
 class Machine(wiring.Component):
@@ -40,12 +51,9 @@ class Machine(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.controller = self._build(CentralBroadcastController)
-        self.scan_generator = self._build(VideoScanGenerator)
-        self.cards = [
-            self._build(ProcessingElement if card == PROCESSING_ELEMENT else MemoryUnit)
-            for card in configuration.cards
-        ]
+        self.controller = self.make_board("central_broadcast_controller")
+        self.scan_generator = self.make_board("video_scan_generator")
+        self.cards = [self.make_board(CARDS[letter]) for letter in configuration.cards]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -54,9 +62,14 @@ class Machine(wiring.Component):
                if configuration.observe else {}),
         })
 
-    def _build(self, card):
-        """One card of a class; a machine of other boards with the same connectors overrides it."""
-        return card(configuration=self.configuration)
+    def make_board(self, name: str) -> wiring.Component:
+        """A new board of the kind ``name``, a key of ``BOARDS``; called once for each that the
+        machine has, the controller first, the scan generator next, then slot by slot.
+
+        A subclass overrides it to put other boards in the same places.  They must have the
+        signature that ``BOARDS[name]`` has with this machine's configuration.
+        """
+        return BOARDS[name](configuration=self.configuration)
 
     def _cards_of(self, letter):
         return [card for card, place in zip(self.cards, self.configuration.cards, strict=True)
@@ -74,10 +87,9 @@ class Machine(wiring.Component):
         m = Module()
         m.submodules.controller = controller = self.controller
         m.submodules.scan_generator = generator = self.scan_generator
-        names = {PROCESSING_ELEMENT: "processing_element", MEMORY_UNIT: "memory_unit"}
         for slot, (card, letter) in enumerate(zip(self.cards, self.configuration.cards,
                                                   strict=True)):
-            m.submodules[f"slot_{slot}_{names[letter]}"] = card
+            m.submodules[f"slot_{slot}_{CARDS[letter]}"] = card
 
         wiring.connect(m, controller.commands, wiring.flipped(self.commands))
         pins = wires(m, "pin_wires")

@@ -18,7 +18,8 @@ import numpy as np
 from ...golden.specification.activity import ACTIVITY_BITS
 from ...golden.specification.commands import ResponseKind, command_words
 from ...golden.specification.configuration import MachineConfiguration
-from ..export.verilog import CARD_MODULES, machine_verilog
+from ...hdl.machine import BOARDS
+from ..export.verilog import machine_verilog
 from ..support.cache import cached, content_hash, sources_hash
 from .activity_record import BUCKETS, KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
@@ -33,7 +34,7 @@ FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3"
 #: Each kind of card is compiled once however many slots hold one: half the time to build, and a
 #: program so much smaller that it runs twice as fast.
 ONCE = "`verilator_config\n" + "".join(
-    f'no_inline -module "{name}"\n' for name in CARD_MODULES.values())
+    f'no_inline -module "{name}"\n' for name in BOARDS)
 
 
 #: A response in the results; a depth buffer has hundreds of thousands.

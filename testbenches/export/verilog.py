@@ -20,29 +20,16 @@ from amaranth.hdl import (
 from amaranth.lib import memory, wiring
 
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.controller.central_broadcast_controller import CentralBroadcastController
-from ...hdl.machine import Machine
-from ...hdl.memory_unit.memory_unit import MemoryUnit
-from ...hdl.processing_element.processing_element import ProcessingElement
-from ...hdl.video.video_scan_generator import VideoScanGenerator
+from ...hdl.machine import BOARDS, Machine
 from .plain_netlist import plain_netlist
 
 __all__ = [
-    "CARD_MODULES",
     "Port",
     "component_ports",
     "component_verilog",
     "machine_verilog",
     "run_yosys",
 ]
-
-#: The module that each card of a machine is written as, in this order.
-CARD_MODULES = {
-    CentralBroadcastController: "central_broadcast_controller",
-    ProcessingElement: "processing_element",
-    MemoryUnit: "memory_unit",
-    VideoScanGenerator: "video_scan_generator",
-}
 
 #: Processes become registers and multiplexers; what nothing reads is left out.
 _TO_NETLIST = """
@@ -136,7 +123,7 @@ def _padded(address: Value, width: int) -> Value:
 
 
 class _Instantiated(wiring.Component):
-    """Stands in a machine for a card whose module is written once, elsewhere."""
+    """Stands in a machine for a board whose module is written once, elsewhere."""
 
     def __init__(self, module: str, signature: wiring.Signature) -> None:
         self._module = module
@@ -149,14 +136,15 @@ class _Instantiated(wiring.Component):
 
 
 class _MachineOfInstances(Machine):
-    """The machine with an instance in every slot."""
+    """The machine with an instance in the place of every board."""
 
-    def __init__(self, configuration: MachineConfiguration, cards: dict) -> None:
-        self._signatures = {card: part.signature for card, part in cards.items()}
+    def __init__(self, configuration: MachineConfiguration,
+                 boards: dict[str, wiring.Component]) -> None:
+        self._signatures = {name: board.signature for name, board in boards.items()}
         super().__init__(configuration=configuration)
 
-    def _build(self, card):
-        return _Instantiated(CARD_MODULES[card], self._signatures[card])
+    def make_board(self, name: str) -> wiring.Component:
+        return _Instantiated(name, self._signatures[name])
 
 
 @dataclass(frozen=True)
@@ -191,12 +179,11 @@ def component_verilog(component: wiring.Component, name: str) -> str:
 def machine_verilog(configuration: MachineConfiguration) -> str:
     """A whole machine as Verilog text; the top module is ``machine``.
 
-    Each kind of card is one module, however many slots hold one, and so is each memory.
+    Each kind of board is one module, in the order of ``hdl.machine.BOARDS``, however many slots
+    hold one, and so is each memory.
     """
-    cards = {card: card(configuration=configuration) for card in CARD_MODULES}
-    machine = _MachineOfInstances(configuration, cards)
-    return _translated({"machine": machine}
-                       | {CARD_MODULES[kind]: card for kind, card in cards.items()})
+    boards = {name: board(configuration=configuration) for name, board in BOARDS.items()}
+    return _translated({"machine": _MachineOfInstances(configuration, boards), **boards})
 
 
 def _translated(components: dict[str, wiring.Component]) -> str:

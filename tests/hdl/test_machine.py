@@ -12,7 +12,7 @@ from cardcage.golden.specification import commands
 from cardcage.golden.specification.card_order import domains
 from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
-from cardcage.hdl.machine import Machine
+from cardcage.hdl.machine import BOARDS, Machine
 from cardcage.hdl.memory_unit.memory_unit import MemoryUnit
 from cardcage.hdl.processing_element.processing_element import ProcessingElement
 
@@ -145,4 +145,26 @@ def test_presets_are_machines(name, cards, units):
     assert "".join("P" if isinstance(card, ProcessingElement) else "M"
                    for card in machine.cards) == cards
     assert len(machine.memory_units) == units
+    simulate(machine, Sink(machine.responses), after=1)
+
+
+def test_a_subclass_makes_the_boards():
+    """Each place in the machine has the board that ``make_board`` gave for it."""
+    made = []
+
+    class OtherBoards(Machine):
+        def make_board(self, name):
+            class Other(BOARDS[name]):
+                """The same, by another class."""
+
+            made.append((name, Other(configuration=self.configuration)))
+            return made[-1][1]
+
+    machine = OtherBoards(configuration=small_machine("PMPM"))
+    element, unit = "processing_element", "memory_unit"
+    assert [name for name, _ in made] == ["central_broadcast_controller", "video_scan_generator",
+                                          element, unit, element, unit]
+    boards = [board for _, board in made]
+    assert [machine.controller, machine.scan_generator, *machine.cards] == boards
+    assert machine.memory_units == [board for name, board in made if name == unit]
     simulate(machine, Sink(machine.responses), after=1)

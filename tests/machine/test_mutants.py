@@ -161,7 +161,12 @@ def mutate(monkeypatch, module_name, class_name, users, right, wrong):
     exec(compile(source.replace(right, wrong), module.__file__, "exec"), mutant.__dict__)
     monkeypatch.setitem(sys.modules, module.__name__, module)
     for user in users:
-        monkeypatch.setattr(f"cardcage.hdl.{user}.{class_name}", getattr(mutant, class_name))
+        used = importlib.import_module(f"cardcage.hdl.{user}")
+        right_class, wrong_class = getattr(used, class_name), getattr(mutant, class_name)
+        monkeypatch.setattr(used, class_name, wrong_class)
+        for name, board in getattr(used, "BOARDS", {}).items():
+            if board is right_class:
+                monkeypatch.setitem(used.BOARDS, name, wrong_class)
 
 
 def check_machine():
