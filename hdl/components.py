@@ -20,6 +20,7 @@ from .memory_unit.memory_unit import MemoryUnit
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
 from .memory_unit.two_port_memory import TwoPortMemory
+from .memory_unit.word_parts import PARTS
 from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
@@ -62,7 +63,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
-    "frame_tags": lambda c: FrameTags(configuration=c),
+    "frame_tags": lambda c: FrameTags(tag_bits=c.tag_bits),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
@@ -84,7 +85,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
     "survey": lambda c: Survey(configuration=c),
-    "tag_sweep": lambda c: TagSweep(configuration=c),
+    "tag_sweep": lambda c: TagSweep(words=c.words, parts=len(PARTS)),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),
     "triangle_rows": lambda c: TriangleRows(configuration=c),
     "triangle_setup": lambda c: TriangleSetup(configuration=c),

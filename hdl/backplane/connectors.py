@@ -140,8 +140,8 @@ class BroadcastLines(wiring.Signature):
 class PictureLines(wiring.Signature):
     """The controller's lines to every memory unit: the picture shown and the one drawn.
 
-    Each lane of a memory unit has one current tag.  What is written gets it; a
-    word with another tag reads as background.
+    Each part of a memory word (``hdl.memory_unit.word_parts``) has one current tag.  What is
+    written gets it; what has another tag reads as background.
 
     Members
     -------
@@ -151,9 +151,9 @@ class PictureLines(wiring.Signature):
     color_tag: Out(tag_bits) [2]
         The current tags; never 0.
     initialise: Out(1)
-        Begin a pass that gives tag 0 to every lane of every word; only while ``swept``.
+        Begin a pass that gives tag 0 to every part of every word; only while ``swept``.
     sweep: Out(1)
-        Begin a pass that gives tag 0 to lanes whose tag is not the current one; only while
+        Begin a pass that gives tag 0 to parts whose tag is not the current one; only while
         ``swept``.
     swept: In(1)
         The memory unit is in no pass (wired and over all).

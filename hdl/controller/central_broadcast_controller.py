@@ -59,7 +59,7 @@ class CentralBroadcastController(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.tags = FrameTags(configuration=configuration)
+        self.tags = FrameTags(tag_bits=configuration.tag_bits)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
         self._packet = Signal(broadcast_layout(configuration), name="packet")

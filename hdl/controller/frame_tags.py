@@ -4,18 +4,19 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.configuration import MAXIMUM_TAG_BITS, MINIMUM_TAG_BITS
 
 __all__ = ["FrameTags"]
 
 
 class FrameTags(wiring.Component):
-    """Gives every frame a tag that no word in memory has, so that nothing need be cleared.
+    """Gives every frame a tag that no word in memory has: whatever was drawn before it reads as
+    background, without a write.
 
-    Each lane of the memory has one current tag: what is written gets it, and a
-    word with another reads as background.  A frame start gives the depths and the
-    back colours a new one; the front colours keep theirs, however long they are
-    shown.  So no more than two are current: the depths' is that of the colours
+    Each part of a memory word (depth, and either colour) has one current tag: what is
+    written gets it, and what has another reads as background.  A frame start gives the
+    depths and the back colours a new one; the front colours keep theirs, however long
+    they are shown.  So no more than two are current: the depths' is that of the colours
     which were last given one.
 
     A tag is *free* when no word has it.  Only free tags are given out, so a frame
@@ -44,18 +45,22 @@ class FrameTags(wiring.Component):
     depth: Out(tag_bits)
         Current tag of the depths.
     color: Out(tag_bits) [2]
-        Current tag of each of the two colours.
+        Current tag of each of the two colours.  Neither this nor ``depth`` is ever 0.
     sweep: Out(1)
         Begin a pass in every unit, in this clock.
     swept: In(1)
         No unit is in a pass; low from the clock after ``sweep`` until the last one ends.
+
+    Raises ``ValueError`` where ``tag_bits`` is out of range.
     """
 
     latency = 0
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
-        tag_bits = configuration.tag_bits
+    def __init__(self, *, tag_bits: int):
+        if not MINIMUM_TAG_BITS <= tag_bits <= MAXIMUM_TAG_BITS:
+            raise ValueError(f"tag_bits must be {MINIMUM_TAG_BITS} to {MAXIMUM_TAG_BITS}, not "
+                             f"{tag_bits!r}")
+        self.tag_bits = tag_bits
         super().__init__({
             "start": In(1),
             "back": In(1),
@@ -68,8 +73,8 @@ class FrameTags(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        tags = range(1, 1 << self.configuration.tag_bits)  # 0 is no frame's
-        lower = 1 << self.configuration.tag_bits - 1
+        tags = range(1, 1 << self.tag_bits)  # 0 is no frame's
+        lower = 1 << self.tag_bits - 1
         free = Signal(len(tags) + 1, init=sum(1 << tag for tag in tags if tag != 1))
         stale = Signal.like(free, init=0)
         going = Signal.like(free, init=0)

@@ -5,20 +5,15 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MAXIMUM_TAG_BITS, MAXIMUM_WORDS, MINIMUM_TAG_BITS
-from ...golden.specification.ranges import CHANNEL_BITS
+from .word_parts import PARTS, Part, part_layout, value_bits
 
-__all__ = ["MemoryAccess", "lane_layout"]
-
-
-def lane_layout(bits: int, tag_bits: int) -> data.StructLayout:
-    """One lane of a word: a depth or a colour, and the tag of the frame that wrote it."""
-    return data.StructLayout({"tag": tag_bits, "value": bits})
+__all__ = ["MemoryAccess", "part_answer", "part_chosen", "part_written"]
 
 
 class MemoryAccess(wiring.Signature):
     """Four users of one RAM, in order of precedence; ``Out`` is towards the RAM.
 
-    A word has three lanes (figure 6): depth, and two colours.  Each access takes
+    A word has the parts of ``PARTS`` (figure 6): depth, and two colours.  Each access takes
     place in the clock in which it is asked for and its busy line is low; what it
     reads is there in the next clock, and in that one only.  What a read sees of a
     write of the same word in the same clock is unknown, and so is what a scan reads
@@ -36,7 +31,7 @@ class MemoryAccess(wiring.Signature):
         The colour that is drawn into.
     write_address: Out(address_bits)
         Word that is written.
-    depth_in: Out(lane_layout), color_in: Out(lane_layout)
+    depth_in: Out(part_layout), color_in: Out(part_layout)
         What is written.
     write_busy: In(1)
         The port is the scan's.
@@ -47,16 +42,16 @@ class MemoryAccess(wiring.Signature):
     read_busy: In(1)
         The port is the scan's, or taken by a write.
     sweep: Out(1)
-        Read all three lanes, for their tags.
-    erase: Out(3)
-        Write tag 0 to these lanes: depth, colour 0, colour 1.  Not together with ``sweep``.
+        Read all parts, for their tags.
+    erase: Out(len(PARTS))
+        Write tag 0 to these parts, a bit each.  Not together with ``sweep``.
     sweep_address: Out(address_bits)
         Word that is swept.
     sweep_busy: In(1)
         Somebody else asks.
-    depth: In(lane_layout)
-        Of the word last read.
-    color: In(lane_layout) [2]
+    depth: In(part_layout)
+        The depth of the word last read.
+    color: In(part_layout) [2]
         Both colours of the word last read.
 
     Raises ``ValueError`` for a number out of range.
@@ -69,24 +64,39 @@ class MemoryAccess(wiring.Signature):
             if not low <= value <= high:
                 raise ValueError(f"{name} must be {low} to {high}, not {value!r}")
         address = range(max(2, words))
-        depth = lane_layout(depth_bits, tag_bits)
-        color = lane_layout(3 * CHANNEL_BITS, tag_bits)
+        parts = {kind: part_layout(bits, tag_bits)
+                 for kind, bits in value_bits(depth_bits=depth_bits).items()}
         super().__init__({
             "scan": Out(1),
             "scan_address": Out(address),
             "write": Out(1),
             "back": Out(1),
             "write_address": Out(address),
-            "depth_in": Out(depth),
-            "color_in": Out(color),
+            **{f"{kind}_in": Out(part) for kind, part in parts.items()},
             "write_busy": In(1),
             "read": Out(1),
             "read_address": Out(address),
             "read_busy": In(1),
             "sweep": Out(1),
-            "erase": Out(3),
+            "erase": Out(len(PARTS)),
             "sweep_address": Out(address),
             "sweep_busy": In(1),
-            "depth": In(depth),
-            "color": In(color).array(2),
+            "depth": In(parts["depth"]),
+            "color": In(parts["color"]).array(2),
         })
+
+
+def part_written(access: wiring.PureInterface, part: Part) -> data.View:
+    """What a write brings for ``part``."""
+    return getattr(access, f"{part.kind}_in")
+
+
+def part_chosen(access: wiring.PureInterface, part: Part) -> Value:
+    """A write writes ``part``."""
+    return C(1) if part.picture is None else access.back if part.picture else ~access.back
+
+
+def part_answer(access: wiring.PureInterface, part: Part) -> data.View:
+    """What of ``part`` was read."""
+    answer = getattr(access, part.kind)
+    return answer if part.picture is None else answer[part.picture]

@@ -9,13 +9,15 @@ from ..backplane.connectors import Connector, PictureLines, ScanLines
 from ..backplane.id_increment import IdIncrement
 from ..mapping.interlace import ScanAddress
 from ..wires import wires
+from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
 from .tag_sweep import TagSweep
 from .two_port_memory import TwoPortMemory
+from .word_parts import PARTS
 
 __all__ = ["MemoryUnit"]
 
-#: Of an address, to tell whether a write may go to the word that is swept: a false alarm in 16.
+#: Address bits that tell whether a write may go to the word that is swept: a false alarm in 16.
 COMPARED_BITS = 4
 
 
@@ -29,9 +31,9 @@ class MemoryUnit(wiring.Component):
     element has the port in the meantime; while the scan shows a pixel of this unit it
     goes on to the registers that drive the video bus.
 
-    Each lane of a word has a tag beside it.  One that is not the lane's current
-    tag reads as background: depth 2^d - 1, and the video bus is told that nothing has
-    been drawn there.  A new frame is a new tag, and no word need be cleared; clocks in which
+    Each part of a word (``PARTS``) has a tag beside it.  A part whose tag is not the current
+    one reads as background: depth 2^d - 1, and the video bus is told that nothing has
+    been drawn there.  A new frame is a new tag, so no word is written for it; clocks in which
     nobody asks for anything are used to take old tags out (``TagSweep``).
 
     Latency: a scan fetch is on the video bus four clocks later; read data come
@@ -69,23 +71,26 @@ class MemoryUnit(wiring.Component):
         number = self.left.id
         m.d.comb += [increment.left.eq(number), self.right.id.eq(increment.right)]
 
-        # The lanes of the word just read that are of this frame.
-        access, pictures = self.memory.access, self.pictures
-        current = Signal(3)
-        m.d.comb += current.eq(Cat(word.tag == tag for word, tag in zip(
-            (access.depth, *access.color), (pictures.depth_tag, *pictures.color_tag),
-            strict=True)))
-
-        self._scan(m, number, current[1:])
-        self._serve(m, number, current[0])
+        # The parts of the word just read that are of this frame.
+        current = Signal(len(PARTS))
+        m.d.comb += current.eq(Cat(part_answer(self.memory.access, part).tag == self._tag(part)
+                                   for part in PARTS))
+        by_name = {part.name: current[place] for place, part in enumerate(PARTS)}
+        self._scan(m, number, (by_name["color_0"], by_name["color_1"]))
+        self._serve(m, number, by_name["depth"])
         self._sweep(m, current)
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))
         return m
 
+    def _tag(self, part):
+        """The current tag of a part."""
+        tag = getattr(self.pictures, f"{part.kind}_tag")
+        return tag if part.picture is None else tag[part.picture]
+
     def _scan(self, m, number, current):
-        """Fetch, read, capture, drive: one clock each."""
+        """Fetch, read, capture, drive: one clock each; ``current`` of both colours."""
         m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
         m.submodules.show = show = ScanAddress(configuration=self.configuration)
         access, pictures = self.memory.access, self.pictures
@@ -115,7 +120,7 @@ class MemoryUnit(wiring.Component):
             ]
 
     def _serve(self, m, number, current):
-        """What the processing element asks for, and its answer."""
+        """What the processing element asks for, and its answer; ``current`` of the depth."""
         lines, onward = self.left.lines, self.right.lines
         write, read = lines.write, lines.read
         access, pictures = self.memory.access, self.pictures
@@ -148,7 +153,9 @@ class MemoryUnit(wiring.Component):
         m.d.sync += answered.eq(read_here & ~access.read_busy)
 
     def _sweep(self, m, current):
-        m.submodules.tag_sweep = sweep = TagSweep(configuration=self.configuration)
+        """Take old tags out; ``current`` of all parts."""
+        m.submodules.tag_sweep = sweep = TagSweep(words=self.configuration.words,
+                                                  parts=len(PARTS))
         access, pictures = self.memory.access, self.pictures
         m.d.comb += [
             sweep.start.eq(pictures.sweep),
@@ -159,7 +166,7 @@ class MemoryUnit(wiring.Component):
             access.sweep_address.eq(sweep.address),
             sweep.busy.eq(access.sweep_busy),
             sweep.scan.eq(access.scan),
-            sweep.stale.eq(Cat(word.tag.any() for word in (access.depth, *access.color))
+            sweep.stale.eq(Cat(part_answer(access, part).tag.any() for part in PARTS)
                            & ~current),
         ]
         near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0

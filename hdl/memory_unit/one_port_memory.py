@@ -4,13 +4,14 @@ from amaranth.hdl import *
 from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In
 
-from .memory_access import MemoryAccess
+from .memory_access import MemoryAccess, part_answer, part_chosen, part_written
+from .word_parts import PARTS
 
 __all__ = ["OnePortMemory"]
 
 
 class OnePortMemory(wiring.Component):
-    """Three lanes a word behind one address (figure 6): in each clock one user's access.
+    """All parts of a word behind one address (figure 6): in each clock one user's access.
 
     Latency: one clock from a read to the data.  Throughput: one access a clock,
     of whichever kind.
@@ -29,12 +30,11 @@ class OnePortMemory(wiring.Component):
         self.words = words
         self.depth_bits = depth_bits
         self.tag_bits = tag_bits
-        # Lanes of one width, so that it is one RAM with lane enables and not three.
-        lane = max(Shape.cast(access.members[name].shape).width
-                   for name in ("depth_in", "color_in"))
+        # Parts of one width, so that it is one RAM with an enable for each part, not one RAM each.
+        width = max(Shape.cast(access.members[f"{part.kind}_in"].shape).width for part in PARTS)
         # A read never meets a write, which synthesis cannot know.
-        self.storage = memory.Memory(shape=data.ArrayLayout(lane, 3), depth=words, init=[],
-                                     attrs={"no_rw_check": 1})
+        self.storage = memory.Memory(shape=data.ArrayLayout(width, len(PARTS)), depth=words,
+                                     init=[], attrs={"no_rw_check": 1})
         super().__init__({"access": In(access)})
 
     @property
@@ -51,7 +51,7 @@ class OnePortMemory(wiring.Component):
             m.d.comb += [address.eq(access.scan_address), read.en.eq(1)]
         with m.Elif(access.write):
             m.d.comb += [address.eq(access.write_address),
-                         write.en.eq(Cat(1, ~access.back, access.back))]
+                         write.en.eq(Cat(part_chosen(access, part) for part in PARTS))]
         with m.Elif(access.read):
             m.d.comb += [address.eq(access.read_address), read.en.eq(1)]
         with m.Else():
@@ -64,10 +64,11 @@ class OnePortMemory(wiring.Component):
             access.read_busy.eq(access.scan | access.write),
             access.sweep_busy.eq(access.scan | access.write | access.read),
         ]
-        for lane, written in enumerate((access.depth_in, access.color_in, access.color_in)):
+        for place, part in enumerate(PARTS):
+            written = part_written(access, part)
             # Whatever else is written with it, tag 0 erases.
-            m.d.comb += write.data[lane].eq(
+            m.d.comb += write.data[place].eq(
                 Cat(Mux(access.write, written.tag, 0), written.value))
-        for lane, answer in enumerate((access.depth, *access.color)):
-            m.d.comb += answer.eq(read.data[lane])
+        for place, part in enumerate(PARTS):
+            m.d.comb += part_answer(access, part).eq(read.data[place])
         return m

@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.configuration import MAXIMUM_WORDS
 
 __all__ = ["TagSweep"]
 
@@ -12,18 +12,17 @@ __all__ = ["TagSweep"]
 class TagSweep(wiring.Component):
     """A pass over every word, in clocks in which nobody else asks for the RAM.
 
-    A lane is a part of the word with a tag of its own: depth, and colour of either
-    buffer.  A pass reads each word and writes tag 0 to the lanes that are stale.  Where the
-    processing element may have written the word between the two, it is read again.
-    So, after a pass: no lane of any word has a tag that was not the lane's current
-    one at any time since the pass began.
+    Each part of a word has a tag of its own (``PARTS``).  A pass reads each word and writes
+    tag 0 to the parts that are stale.  Where the processing element may have written the
+    word between the two, it is read again.  So, after a pass: no part of any word has a tag
+    that was not the part's current one at any time since the pass began.
 
     Proof: take such a tag.  From the beginning of the pass nothing writes it,
-    since only current tags are written.  Each lane of each word is read, and if it
+    since only current tags are written.  Each part of each word is read, and if it
     has the tag then, it is stale and erased, or else the word was written and is
     read again.
 
-    The pass that follows ``initialise`` erases every lane without a look: what is
+    The pass that follows ``initialise`` erases every part without a look: what is
     there after power-on is not known.  Fuchs & Johnson have the processing
     elements do that (step (c) after figure 12); here units that have none are
     background as well, and no element carries the logic for it.
@@ -35,49 +34,63 @@ class TagSweep(wiring.Component):
     other clock at most: read and check 3, erase 3.  ``initialise``: one, and two.  While
     there are writes, as long as it takes to find idle clocks.
 
+    Parameters
+    ----------
+    words: int, positive
+        How many it visits.
+    parts: int, positive
+        Parts of a word.
+
     Members
     -------
     start, initialise: In(1)
         Begin a pass of either kind; only while ``idle``.  Nothing is written in the latter.
     idle: Out(1)
         No pass goes on.
-    address: Out(address_bits)
+    address: Out(range(words))
         The word visited.
     sweep: Out(1)
         Asks for a read of the word.
-    erase: Out(3)
-        Asks for tag 0 in these lanes.
+    erase: Out(parts)
+        Asks for tag 0 in these parts.
     busy: In(1)
         What is asked for does not take place in this clock.
     scan: In(1)
         The scan asks in this clock: while initialising, the only one.
-    stale: In(3)
-        In the clock after a read: lanes of that word whose tag is neither current nor 0.
+    stale: In(parts)
+        In the clock after a read: parts of that word whose tag is neither current nor 0.
     overwritten: In(1)
         The processing element writes in this clock, and perhaps to the word visited.
+
+    Raises ``ValueError`` for a number out of range.
     """
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
+    def __init__(self, *, words: int, parts: int):
+        if not 1 <= words <= MAXIMUM_WORDS:
+            raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
+        if parts < 1:
+            raise ValueError(f"parts must be positive, not {parts!r}")
+        self.words = words
+        self.parts = parts
         super().__init__({
             "start": In(1),
             "initialise": In(1),
             "idle": Out(1),
-            "address": Out(configuration.address_bits),
+            "address": Out(range(max(2, words))),
             "sweep": Out(1),
-            "erase": Out(3),
+            "erase": Out(parts),
             "busy": In(1),
             "scan": In(1),
-            "stale": In(3),
+            "stale": In(parts),
             "overwritten": In(1),
         })
 
     def elaborate(self, platform):
         m = Module()
-        words = self.configuration.words
-        left = Signal(3)  # lanes to erase
+        words = self.words
+        left = Signal(self.parts)  # parts to erase
         everything = Signal()
-        # Of the clock before: whether the RAM was free, was written; and whether in ERASE.
+        # In the clock before, the RAM was free, was written; and tag 0 was asked for.
         served = Signal()
         overwritten = Signal()
         asked = Signal()
@@ -90,7 +103,7 @@ class TagSweep(wiring.Component):
         with m.FSM():
             with m.State("IDLE"):
                 m.d.comb += self.idle.eq(1)
-                m.d.sync += [everything.eq(self.initialise), left.eq(0b111)]
+                m.d.sync += [everything.eq(self.initialise), left.eq((1 << self.parts) - 1)]
                 with m.If(self.initialise):
                     m.next = "ERASE"
                 with m.Elif(self.start):

@@ -1,16 +1,17 @@
-"""The RAM of a memory unit as an FPGA has it: each lane one port to read and one to write."""
+"""The RAM of a memory unit as an FPGA has it: each part one port to read and one to write."""
 
 from amaranth.hdl import *
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In
 
-from .memory_access import MemoryAccess
+from .memory_access import MemoryAccess, part_answer, part_chosen, part_written
+from .word_parts import PARTS
 
 __all__ = ["TwoPortMemory"]
 
 
 class TwoPortMemory(wiring.Component):
-    """Each lane a block RAM of its own, so that the users do not meet.
+    """Each part of a word a block RAM of its own, so that the users do not meet.
 
     The scan reads colours and the processing element depths, and what is written
     goes through the other port: none of them ever waits.  The sweep takes clocks
@@ -40,9 +41,9 @@ class TwoPortMemory(wiring.Component):
         self.depth_bits = depth_bits
         self.tag_bits = tag_bits
         # Spares synthesis the logic that would make a read beside a write see the old word.
-        self.storages = [memory.Memory(shape=access.members[name].shape, depth=words, init=[],
-                                       attrs={"no_rw_check": 1})
-                         for name in ("depth_in", "color_in", "color_in")]
+        self.storages = [memory.Memory(shape=access.members[f"{part.kind}_in"].shape, depth=words,
+                                       init=[], attrs={"no_rw_check": 1})
+                         for part in PARTS]
         super().__init__({"access": In(access)})
 
     def elaborate(self, platform):
@@ -53,29 +54,24 @@ class TwoPortMemory(wiring.Component):
         erase = Signal.like(access.erase)
         m.d.comb += erase.eq(Mux(access.sweep_busy, 0, access.erase))
 
-        lanes = (  # name, who reads and where, whether it is written, what
-            ("depth", access.read, access.read_address, 1, access.depth_in),
-            ("color_0", access.scan, access.scan_address, ~access.back, access.color_in),
-            ("color_1", access.scan, access.scan_address, access.back, access.color_in),
-        )
         answers = []
-        for lane, (name, asked, address, chosen, written) in enumerate(lanes):
-            m.submodules[name] = storage = self.storages[lane]
+        for place, (part, storage) in enumerate(zip(PARTS, self.storages, strict=True)):
+            m.submodules[part.name] = storage
             write, read = storage.write_port(), storage.read_port()
+            asked = getattr(access, part.reader)
+            address = getattr(access, f"{part.reader}_address")
+            written = part_written(access, part)
             m.d.comb += [
                 read.addr.eq(Mux(asked, address, access.sweep_address)),
                 read.en.eq(asked | sweep),
                 write.addr.eq(Mux(access.write, access.write_address, access.sweep_address)),
-                write.en.eq((access.write & chosen) | erase[lane]),
+                write.en.eq((access.write & part_chosen(access, part)) | erase[place]),
                 # Whatever else is written with it, tag 0 erases.
                 write.data.value.eq(written.value),
                 write.data.tag.eq(Mux(access.write, written.tag, 0)),
             ]
             answers.append(read.data)
 
-        m.d.comb += [
-            access.depth.eq(answers[0]),
-            access.color[0].eq(answers[1]),
-            access.color[1].eq(answers[2]),
-        ]
+        m.d.comb += [part_answer(access, part).eq(answer)
+                     for part, answer in zip(PARTS, answers, strict=True)]
         return m

@@ -3,14 +3,13 @@
 import random
 
 import pytest
-from hdl_bench.bench import Agent, simulate
-from hdl_bench.pictures import small_machine
+from hdl_bench.bench import Agent, rejects, simulate
 
 from cardcage.hdl.controller.frame_tags import FrameTags
 
 
 class Memory(Agent):
-    """Lanes that may hold every tag they were ever given, until a pass takes it out.
+    """Parts that may hold every tag they were ever given, until a pass takes it out.
 
     Frames start at random, and the picture is swapped at random, seldom or often; a pass takes
     ``length()`` clocks.
@@ -50,8 +49,8 @@ class Memory(Agent):
         if self.left:
             self.left -= 1
             if self.left == 0:
-                for lane, held in enumerate(self.held):
-                    held -= self.stale[lane] - {self.current[lane]}
+                for part, held in enumerate(self.held):
+                    held -= self.stale[part] - {self.current[part]}
         if ctx.get(dut.sweep):
             assert self.left == 0
             self.passes += 1
@@ -62,12 +61,12 @@ class Memory(Agent):
         self.started += bool(self.starts)
 
     def after(self, ctx):
-        """The new tag is one that the lanes that get it do not hold."""
-        for lane in self.renewed:
-            tag = ctx.get((self.dut.depth, *self.dut.color)[lane])
-            assert tag not in self.held[lane], f"tag {tag} is still in lane {lane}"
-            self.current[lane] = tag
-            self.held[lane].add(tag)
+        """The new tag is one that the parts that get it do not hold."""
+        for part in self.renewed:
+            tag = ctx.get((self.dut.depth, *self.dut.color)[part])
+            assert tag not in self.held[part], f"tag {tag} is still in part {part}"
+            self.current[part] = tag
+            self.held[part].add(tag)
             self.used.add(tag)
         self.renewed = ()
 
@@ -81,7 +80,7 @@ class After(Agent):
 
 
 def frames(tag_bits, seed, count=200, **arguments):
-    dut = FrameTags(configuration=small_machine(tag_bits=tag_bits))
+    dut = FrameTags(tag_bits=tag_bits)
     memory = Memory(dut, seed, count, **arguments)
     simulate(dut, After(memory), memory)
     return memory
@@ -114,3 +113,8 @@ def test_while_a_pass_does_not_end_each_tag_is_given_out_once():
     assert memory.used == set(range(2, 8))
     with pytest.raises(AssertionError, match="no end"):
         frames(3, "never", 7, swap=0.5, length=lambda: 10**9, start=1.0)
+
+
+@pytest.mark.parametrize("wrong", [1, 7])
+def test_bad_widths(wrong):
+    rejects(FrameTags, "tag_bits", tag_bits=wrong)

@@ -38,7 +38,7 @@ class Card(Agent):
         self.pick = random.Random(f"card {seed}")
         self.clocks = clocks
         self.renumber, self.period, self.gaps, self.traffic = renumber, period, gaps, traffic
-        # What is seen of each lane; None is background.
+        # What is seen of each part; None is background.
         self.depth, self.color = [None] * WORDS, [[None] * WORDS, [None] * WORDS]
         self.front = 0
         self.tags = [1, 1, 1]  # current ones: depth, colours
@@ -97,11 +97,11 @@ class Card(Agent):
         fresh = set(range(1, 1 << TAG_BITS)) - self.held[0] - self.held[back] - set(self.tags)
         if fresh and self.idle and pick.random() < 0.1:
             tag = pick.choice(sorted(fresh))
-            for lane in (0, back):
-                self.held[lane].add(self.tags[lane])
+            for part in (0, back):
+                self.held[part].add(self.tags[part])
                 if self.since is not None:
-                    self.since[lane].add(self.tags[lane])
-                self.tags[lane] = tag
+                    self.since[part].add(self.tags[part])
+                self.tags[part] = tag
             self.depth, self.color[back - 1] = [None] * WORDS, [None] * WORDS
             self.counts["frames"] += 1
         if quiet and pick.random() < 0.2:

@@ -3,8 +3,7 @@
 import random
 
 import pytest
-from hdl_bench.bench import Agent, simulate
-from hdl_bench.pictures import small_machine
+from hdl_bench.bench import Agent, rejects, simulate
 
 from cardcage.hdl.memory_unit.tag_sweep import TagSweep
 
@@ -44,9 +43,9 @@ class Memory(Agent):
             used = {tag for word in self.tags for tag in word} | set(self.current)
             fresh = [tag for tag in range(1, TAGS) if tag not in used]
             if fresh:
-                lane = pick.randrange(3)
-                self.current[lane] = pick.choice(fresh)
-                self.stale[lane].discard(self.current[lane])
+                part = pick.randrange(3)
+                self.current[part] = pick.choice(fresh)
+                self.stale[part].discard(self.current[part])
         self.other = pick.random() < self.busy
         self.written = None
         if pick.random() < self.write:
@@ -56,8 +55,8 @@ class Memory(Agent):
         ctx.set(dut.busy, self.other or self.written is not None)
         stale = 0
         if self.answer is not None:
-            stale = sum(1 << lane for lane, tag in enumerate(self.answer)
-                        if tag not in (0, self.current[lane]))
+            stale = sum(1 << part for part, tag in enumerate(self.answer)
+                        if tag not in (0, self.current[part]))
         ctx.set(dut.stale, stale)
         hit = self.written is not None and self.written[0] == ctx.get(dut.address)
         # Other words may be taken for it.
@@ -73,15 +72,15 @@ class Memory(Agent):
         served = not self.other and self.written is None
         self.answer = list(self.tags[address]) if sweep and served else None
         if self.written is not None:
-            word, lanes = self.written
-            for lane in lanes:
-                self.tags[word][lane] = self.current[lane]
+            word, parts = self.written
+            for part in parts:
+                self.tags[word][part] = self.current[part]
         elif erase and served:
-            for lane in range(3):
-                if erase >> lane & 1:
+            for part in range(3):
+                if erase >> part & 1:
                     # Only what is stale is ever erased.
-                    assert self.tags[address][lane] != self.current[lane]
-                    self.tags[address][lane] = 0
+                    assert self.tags[address][part] != self.current[part]
+                    self.tags[address][part] = 0
         if self.start:
             self.begin = self.clock
             self.stale = [set(range(1, TAGS)) - {tag} for tag in self.current]
@@ -93,8 +92,8 @@ class Memory(Agent):
             self.lengths.append(self.clock - 1 - self.begin)
             self.begin = None
             for word in self.tags:
-                for lane, tag in enumerate(word):
-                    assert tag not in self.stale[lane]
+                for part, tag in enumerate(word):
+                    assert tag not in self.stale[part]
 
 
 class Ends(Agent):
@@ -108,7 +107,7 @@ class Ends(Agent):
 
 
 def passes(words, seed, **arguments):
-    dut = TagSweep(configuration=small_machine("PM", 8, 8, words=words))
+    dut = TagSweep(words=words, parts=3)
     memory = Memory(dut, words, seed, **arguments)
     simulate(dut, Ends(memory), memory)
     return memory
@@ -136,7 +135,7 @@ def test_at_most_six_clocks_a_word_beside_the_scan():
             super().drive(ctx)
 
     for offset in range(4):
-        dut = TagSweep(configuration=small_machine("PM", 8, 8, words=16))
+        dut = TagSweep(words=16, parts=3)
         memory = EveryOther(dut, 16, offset, passes=2)
         memory.clock = offset
         simulate(dut, Ends(memory), memory)
@@ -146,10 +145,11 @@ def test_at_most_six_clocks_a_word_beside_the_scan():
 
 
 @pytest.mark.parametrize("words", [1, 2, 16])
+@pytest.mark.parametrize("parts", [1, 3, 5])
 @pytest.mark.parametrize("scan", [0.0, 0.5])
-def test_initialise_erases_every_lane_of_every_word_without_a_look(words, scan):
-    pick = random.Random(f"initialise {words} {scan}")
-    dut = TagSweep(configuration=small_machine("PM", 8, 8, words=words))
+def test_initialise_erases_every_part_of_every_word_without_a_look(words, parts, scan):
+    pick = random.Random(f"initialise {words} {parts} {scan}")
+    dut = TagSweep(words=words, parts=parts)
     erased = []
 
     class Boot(Agent):
@@ -161,12 +161,12 @@ def test_initialise_erases_every_lane_of_every_word_without_a_look(words, scan):
             self.scan = pick.random() < scan
             ctx.set(dut.scan, self.scan)
             ctx.set(dut.busy, self.scan)
-            ctx.set(dut.stale, pick.randrange(8))  # what power-on left
+            ctx.set(dut.stale, pick.getrandbits(parts))  # what power-on left
 
         def sample(self, ctx):
             assert not ctx.get(dut.sweep)
             if ctx.get(dut.erase) and not ctx.get(dut.busy):
-                assert ctx.get(dut.erase) == 0b111
+                assert ctx.get(dut.erase) == (1 << parts) - 1
                 erased.append(ctx.get(dut.address))
             self.clock += 1
             self.finished = self.clock > 4 and bool(ctx.get(dut.idle))
@@ -174,3 +174,8 @@ def test_initialise_erases_every_lane_of_every_word_without_a_look(words, scan):
     clocks = simulate(dut, Boot())
     assert erased == list(range(words))
     assert scan or clocks == max(2 + words + 2, 5)
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("words", 0), ("words", 1 << 21), ("parts", 0)])
+def test_bad_sizes(name, wrong):
+    rejects(TagSweep, name, **{"words": 4, "parts": 3} | {name: wrong})

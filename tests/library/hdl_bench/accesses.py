@@ -13,7 +13,7 @@ class Accesses(Agent):
     """Random requests in every clock, and what must come of them one clock later.
 
     ``ports``: 1, and each clock is one user's; 2, and only the sweep waits.  What is read of the
-    lane that is written in that clock may be anything.
+    part that is written in that clock may be anything.
     ``counts`` of what took place; ``met``: reads of the word written in that clock.
     """
 
@@ -21,7 +21,7 @@ class Accesses(Agent):
         self.dut, self.access = dut, dut.access
         self.pick = random.Random(f"accesses {seed}")
         self.clocks, self.ports = clocks, ports
-        # (tag, value) of each lane; None is unknown.
+        # (tag, value) of each part; None is unknown.
         self.words = [[(None, None)] * 3 for _ in range(dut.words)]
         self.expected = {}
         self.checked = self.met = self.clock = 0
@@ -51,11 +51,11 @@ class Accesses(Agent):
     def sample(self, ctx):
         access, asked = self.access, self.asked
         answers = (access.depth, *access.color)
-        for lane, word in self.expected.items():
-            got = ctx.get(answers[lane])
+        for part, word in self.expected.items():
+            got = ctx.get(answers[part])
             for name, value in zip(("tag", "value"), word, strict=True):
                 if value is not None:
-                    assert getattr(got, name) == value, f"clock {self.clock}: lane {lane} {name}"
+                    assert getattr(got, name) == value, f"clock {self.clock}: part {part} {name}"
                     self.checked += 1
 
         one = self.ports == 1
@@ -77,9 +77,9 @@ class Accesses(Agent):
             word[back] = asked["color_in"]["tag"], asked["color_in"]["value"]
         if idle and asked["erase"]:
             word = self.words[asked["sweep_address"]]
-            for lane in range(3):
-                if asked["erase"] >> lane & 1:
-                    word[lane] = 0, None
+            for part in range(3):
+                if asked["erase"] >> part & 1:
+                    word[part] = 0, None
         self.expected = {}
         if read:
             met = write and asked["read_address"] == asked["write_address"]
@@ -87,10 +87,10 @@ class Accesses(Agent):
             if not met:
                 self.expected[0] = before[asked["read_address"]][0]
         if scan:
-            for lane in (1, 2):
-                met = write and lane == back and asked["scan_address"] == asked["write_address"]
+            for part in (1, 2):
+                met = write and part == back and asked["scan_address"] == asked["write_address"]
                 if not met:
-                    self.expected[lane] = before[asked["scan_address"]][lane]
+                    self.expected[part] = before[asked["scan_address"]][part]
         if idle and asked["sweep"]:
             self.expected = dict(enumerate(before[asked["sweep_address"]]))
         for user, done in (("scan", scan), ("write", write), ("read", read),
