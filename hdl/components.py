@@ -5,8 +5,10 @@ from collections.abc import Callable
 from amaranth.lib import wiring
 
 from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.queues import depth_lanes
 from .arithmetic.divider import Divider
 from .arithmetic.pipelined_multiplier import PipelinedMultiplier
+from .backplane.connectors import memory_bus_bits
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
 from .controller.central_broadcast_controller import CentralBroadcastController
@@ -38,7 +40,7 @@ from .triangle_setup.outline import TriangleOutline
 from .triangle_setup.pixel_box import PixelBox
 from .triangle_setup.plane_setup import PlaneSetup, plane_division
 from .triangle_setup.result_queue import ResultQueue
-from .triangle_setup.sampling_grid import SamplingGrid
+from .triangle_setup.sampling_grid import SamplingGrid, grid_layout
 from .triangle_setup.triangle_setup import TriangleSetup
 from .triangle_setup.vertex_sort import VertexSort
 from .video.video_scan_generator import VideoScanGenerator
@@ -58,7 +60,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "memory_unit": lambda c: MemoryUnit(configuration=c),
     "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
-    "depth_read_back": lambda c: DepthReadBack(configuration=c),
+    "depth_read_back": lambda c: DepthReadBack(**memory_bus_bits(c)),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
@@ -67,30 +69,33 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
-    "memory_bus_selector": lambda c: MemoryBusSelector(configuration=c),
-    "one_port_depth_test": lambda c: OnePortDepthTest(configuration=c),
-    "one_port_lane": lambda c: OnePortLane(configuration=c),
+    "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
+    "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
+                                                      lanes=depth_lanes(c)),
+    "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
     # That of a triangle's area.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
         a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
     "pixel_address": lambda c: PixelAddress(configuration=c),
-    "pixel_box": lambda c: PixelBox(configuration=c),
+    "pixel_box": lambda c: PixelBox(grid=grid_layout(c), coordinate_bits=c.coordinate_bits,
+                                    sub_bits=c.sub_bits),
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
-    "processing_element_control": lambda c: ProcessingElementControl(configuration=c),
+    "processing_element_control": lambda c: ProcessingElementControl(id_bits=c.id_bits,
+                                                                     depth_bits=c.depth_bits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
-    "survey": lambda c: Survey(configuration=c),
+    "survey": lambda c: Survey(**memory_bus_bits(c)),
     "tag_sweep": lambda c: TagSweep(words=c.words, parts=len(PARTS)),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),
     "triangle_rows": lambda c: TriangleRows(configuration=c),
     "triangle_setup": lambda c: TriangleSetup(configuration=c),
     "triangle_spans": lambda c: TriangleSpans(configuration=c),
-    "two_port_depth_test": lambda c: TwoPortDepthTest(configuration=c),
+    "two_port_depth_test": lambda c: TwoPortDepthTest(**memory_bus_bits(c)),
     "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
     "vertex_sort": lambda c: VertexSort(configuration=c),

@@ -31,28 +31,31 @@ __all__ = [
     "MemoryBus",
     "PictureLines",
     "ScanLines",
+    "memory_bus_bits",
     "read_request_layout",
     "scan_address_layout",
     "write_request_layout",
 ]
 
 
-def read_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+def memory_bus_bits(configuration: MachineConfiguration) -> dict[str, int]:
+    """The numbers that a ``MemoryBus`` is made from."""
+    return {"id_bits": configuration.id_bits, "address_bits": configuration.address_bits,
+            "depth_bits": configuration.depth_bits}
+
+
+def read_request_layout(*, id_bits: int, address_bits: int) -> data.StructLayout:
     """Read the depth at an address of a unit."""
-    return data.StructLayout({
-        "valid": 1,
-        "unit": configuration.id_bits,
-        "address": configuration.address_bits,
-    })
+    return data.StructLayout({"valid": 1, "unit": id_bits, "address": address_bits})
 
 
-def write_request_layout(configuration: MachineConfiguration) -> data.StructLayout:
+def write_request_layout(*, id_bits: int, address_bits: int, depth_bits: int) -> data.StructLayout:
     """Write the depth and the back colour at an address of a unit."""
     return data.StructLayout({
         "valid": 1,
-        "unit": configuration.id_bits,
-        "address": configuration.address_bits,
-        "depth": configuration.depth_bits,
+        "unit": id_bits,
+        "address": address_bits,
+        "depth": depth_bits,
         "color": 3 * CHANNEL_BITS,
     })
 
@@ -79,14 +82,21 @@ class MemoryBus(wiring.Signature):
     scanned: In(2)
         Known before any request: the one port of a unit with an even number is taken by the
         scan, and of one with an odd number.
+
+    Raises ``ValueError`` where a number of bits is not positive.
     """
 
-    def __init__(self, configuration: MachineConfiguration):
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        for name, bits in (("id_bits", id_bits), ("address_bits", address_bits),
+                           ("depth_bits", depth_bits)):
+            if bits < 1:
+                raise ValueError(f"{name} must be positive, not {bits!r}")
         super().__init__({
-            "read": Out(read_request_layout(configuration)),
+            "read": Out(read_request_layout(id_bits=id_bits, address_bits=address_bits)),
             "read_busy": In(1),
-            "read_data": In(configuration.depth_bits),
-            "write": Out(write_request_layout(configuration)),
+            "read_data": In(depth_bits),
+            "write": Out(write_request_layout(id_bits=id_bits, address_bits=address_bits,
+                                              depth_bits=depth_bits)),
             "write_busy": In(1),
             "scanned": In(2),
         })
@@ -108,7 +118,7 @@ class Connector(wiring.Signature):
     def __init__(self, configuration: MachineConfiguration):
         super().__init__({
             "id": Out(configuration.id_bits),
-            "lines": Out(MemoryBus(configuration)),
+            "lines": Out(MemoryBus(**memory_bus_bits(configuration))),
             "response": In(stream.Signature(response_layout())),
         })
 

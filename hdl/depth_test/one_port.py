@@ -3,8 +3,7 @@
 from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
 
-from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.queues import FRAGMENTS_WAITING, depth_lanes
+from ...golden.specification.queues import FRAGMENTS_WAITING
 from .one_port_lane import OnePortLane
 from .signature import DepthTestSignature
 
@@ -29,24 +28,33 @@ class OnePortDepthTest(wiring.Component):
     while the ports of even and odd units have as many accesses; on one unit two clocks for
     a visible one.
 
-    Members: those of ``DepthTestSignature``.
+    Parameters
+    ----------
+    id_bits, address_bits, depth_bits: int
+        As of ``DepthTestSignature``.
+    lanes: int
+        1 or 2.
+
+    Members: those of ``DepthTestSignature``.  Raises ``ValueError`` for a number out of range.
     """
 
     latency = OnePortLane.latency
     waiting = 2
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
-        super().__init__(DepthTestSignature(configuration))
-
-    @property
-    def lanes(self) -> int:
-        """1 or 2."""
-        return depth_lanes(self.configuration)
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int, lanes: int):
+        if lanes not in (1, 2):
+            raise ValueError(f"lanes must be 1 or 2, not {lanes!r}")
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        self.lanes = lanes
+        super().__init__(DepthTestSignature(id_bits=id_bits, address_bits=address_bits,
+                                            depth_bits=depth_bits))
 
     def elaborate(self, platform):
         m = Module()
-        lanes = [OnePortLane(configuration=self.configuration) for _ in range(self.lanes)]
+        lanes = [OnePortLane(id_bits=self.id_bits, address_bits=self.address_bits,
+                             depth_bits=self.depth_bits) for _ in range(self.lanes)]
         for number, lane in enumerate(lanes):
             m.submodules[f"lane_{number}"] = lane
         levels = self._queues(m, lanes)

@@ -3,8 +3,6 @@
 from amaranth.hdl import *
 from amaranth.lib import wiring
 
-from ...golden.specification.configuration import MachineConfiguration
-from ..rasteriser.interpolator import fragment_layout
 from .signature import DepthTestSignature
 
 __all__ = ["OnePortLane"]
@@ -28,19 +26,22 @@ class OnePortLane(wiring.Component):
     a fragment a clock while its unit has the port: on one unit each visible
     fragment takes two accesses, two units in turn take one a clock.
 
-    Members: those of ``DepthTestSignature``.
+    Parameters and members: those of ``DepthTestSignature``.
     """
 
     latency = 3
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
-        super().__init__(DepthTestSignature(configuration))
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        super().__init__(DepthTestSignature(id_bits=id_bits, address_bits=address_bits,
+                                            depth_bits=depth_bits))
 
     def elaborate(self, platform):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
-        layout = fragment_layout(self.configuration)
+        layout = fragment.shape()
         answer = Signal(layout)
         compare = Signal(layout)
         write = Signal(layout)
@@ -50,8 +51,8 @@ class OnePortLane(wiring.Component):
         winning = Signal()
         has_written = Signal()
         fresh = Signal()  # the answer is on the lines in this clock only
-        held = Signal(self.configuration.depth_bits)
-        stored = Signal(self.configuration.depth_bits)
+        held = Signal(self.depth_bits)
+        stored = Signal(self.depth_bits)
 
         # Each stage moves on when the next one is empty or moves on itself.
         write_moves = ~winning | ~memory.write_busy

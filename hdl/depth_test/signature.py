@@ -3,7 +3,6 @@
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import MemoryBus
 from ..rasteriser.interpolator import fragment_layout
 
@@ -11,7 +10,7 @@ __all__ = ["DepthTestSignature"]
 
 
 class DepthTestSignature(wiring.Signature):
-    """Fragments in; reads and writes of memory units out.
+    """Fragments in; reads and writes of memory units out.  Parameters: those of ``MemoryBus``.
 
     Members
     -------
@@ -24,10 +23,12 @@ class DepthTestSignature(wiring.Signature):
         In this clock a depth that was on its way to the memory took the place of its answer.
     """
 
-    def __init__(self, configuration: MachineConfiguration):
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        bits = {"id_bits": id_bits, "address_bits": address_bits, "depth_bits": depth_bits}
+        memory = MemoryBus(**bits)
         super().__init__({
-            "fragments": In(stream.Signature(fragment_layout(configuration))),
-            "memory": Out(MemoryBus(configuration)),
+            "fragments": In(stream.Signature(fragment_layout(**bits))),
+            "memory": Out(memory),
             "busy": Out(1),
             "forwarded": Out(1),
         })

@@ -3,8 +3,6 @@
 from amaranth.hdl import *
 from amaranth.lib import wiring
 
-from ...golden.specification.configuration import MachineConfiguration
-from ..rasteriser.interpolator import fragment_layout
 from .signature import DepthTestSignature
 
 __all__ = ["TwoPortDepthTest"]
@@ -24,21 +22,24 @@ class TwoPortDepthTest(wiring.Component):
     Latency: ``latency`` clocks from a fragment's read to its write.  Throughput:
     a fragment a clock, visible or not.
 
-    Members: those of ``DepthTestSignature``.  ``fragments`` is always ready, the memory's busy
-    lines are not looked at.
+    Parameters and members: those of ``DepthTestSignature``.  ``fragments`` is always ready, the
+    memory's busy lines are not looked at.
     """
 
     latency = 3
     waiting = 0  #: Clocks from a fragment to its read.
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
-        super().__init__(DepthTestSignature(configuration))
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        super().__init__(DepthTestSignature(id_bits=id_bits, address_bits=address_bits,
+                                            depth_bits=depth_bits))
 
     def elaborate(self, platform):
         m = Module()
         memory, fragment = self.memory, self.fragments.payload
-        layout = fragment_layout(self.configuration)
+        layout = fragment.shape()
         answer = Signal(layout, reset_less=True)
         compare = Signal(layout, reset_less=True)
         write = Signal(layout, reset_less=True)
@@ -47,8 +48,8 @@ class TwoPortDepthTest(wiring.Component):
         comparing = Signal()
         winning = Signal()
         was_winning = Signal()
-        stored = Signal(self.configuration.depth_bits, reset_less=True)
-        nearest = Signal(self.configuration.depth_bits, reset_less=True)
+        stored = Signal(self.depth_bits, reset_less=True)
+        nearest = Signal(self.depth_bits, reset_less=True)
         follows = Signal()  # compare's pixel is that of the fragment a clock ahead
 
         m.d.comb += [

@@ -8,7 +8,6 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.commands import ResponseKind
-from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.words import Operation, response_layout
 
 __all__ = ["ProcessingElementControl"]
@@ -19,6 +18,10 @@ class ProcessingElementControl(wiring.Component):
     Control only: it moves no pixel, and triangles do not pass through it.
 
     Latency: an operation starts in the clock in which it comes, or the datapath is empty.
+
+    Parameters
+    ----------
+    id_bits, depth_bits: int, positive
 
     Members
     -------
@@ -44,11 +47,16 @@ class ProcessingElementControl(wiring.Component):
     idle: Out(1)
         No operation here, and the datapath is empty.
 
-    Fuchs & Johnson, the steps after figure 12.
+    Fuchs & Johnson, the steps after figure 12.  Raises ``ValueError`` where a number of bits is
+    not positive.
     """
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
+    def __init__(self, *, id_bits: int, depth_bits: int):
+        for name, bits in (("id_bits", id_bits), ("depth_bits", depth_bits)):
+            if bits < 1:
+                raise ValueError(f"{name} must be positive, not {bits!r}")
+        self.id_bits = id_bits
+        self.depth_bits = depth_bits
         super().__init__({
             "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "drawing": In(1),
@@ -57,9 +65,9 @@ class ProcessingElementControl(wiring.Component):
             "surveying": Out(1),
             "reading": Out(1),
             "frame_start": Out(1),
-            "first": In(configuration.id_bits),
-            "end": In(configuration.id_bits),
-            "depths": In(stream.Signature(configuration.depth_bits)),
+            "first": In(id_bits),
+            "end": In(id_bits),
+            "depths": In(stream.Signature(depth_bits)),
             "fragments": In(32),
             "busy_cycles": In(32),
             "responses": Out(stream.Signature(response_layout())),

@@ -4,7 +4,6 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import MemoryBus
 
 __all__ = ["DepthReadBack"]
@@ -15,6 +14,8 @@ class DepthReadBack(wiring.Component):
 
     Latency: a word is offered two clocks after its read.  Throughput: a word every
     two clocks while it is taken and the unit has its port.
+
+    Parameters: those of ``MemoryBus``.
 
     Members
     -------
@@ -35,23 +36,26 @@ class DepthReadBack(wiring.Component):
 
     latency = 2
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        memory = MemoryBus(id_bits=id_bits, address_bits=address_bits, depth_bits=depth_bits)
         super().__init__({
-            "first": In(configuration.id_bits),
-            "end": In(configuration.id_bits),
-            "last_word": In(configuration.address_bits),
+            "first": In(id_bits),
+            "end": In(id_bits),
+            "last_word": In(address_bits),
             "start": In(1),
             "done": Out(1),
-            "depths": Out(stream.Signature(configuration.depth_bits)),
-            "memory": Out(MemoryBus(configuration)),
+            "depths": Out(stream.Signature(depth_bits)),
+            "memory": Out(memory),
         })
 
     def elaborate(self, platform):
         m = Module()
         memory, depths = self.memory, self.depths
         unit = Signal.like(self.first)
-        address = Signal(self.configuration.address_bits)
+        address = Signal(self.address_bits)
         # This address is the last one; the next one is the first.
         last, again = Signal(name="last"), Signal(name="again")
         answering = Signal()  # the answer is on the lines in this clock only

@@ -4,7 +4,6 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import MemoryBus
 
 __all__ = ["MemoryBusSelector"]
@@ -14,6 +13,8 @@ class MemoryBusSelector(wiring.Component):
     """The depth test has the lines, but while a service needs them.  Combinational.
 
     Answers go to all three; only the one that has the lines asked.
+
+    Parameters: those of ``MemoryBus``.
 
     Members
     -------
@@ -27,8 +28,11 @@ class MemoryBusSelector(wiring.Component):
     Inside the processing element of figure 12.
     """
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        lines = MemoryBus(configuration)
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        lines = MemoryBus(id_bits=id_bits, address_bits=address_bits, depth_bits=depth_bits)
         super().__init__({
             "surveying": In(1),
             "reading": In(1),

@@ -6,7 +6,8 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.activity import ACTIVITY_BITS
 from ...golden.specification.configuration import MachineConfiguration
-from ..backplane.connectors import BroadcastLines, Connector
+from ...golden.specification.queues import depth_lanes
+from ..backplane.connectors import BroadcastLines, Connector, memory_bus_bits
 from ..backplane.response_link import ResponseLink
 from ..backplane.words import span_layout
 from ..depth_test.one_port import OnePortDepthTest
@@ -66,19 +67,21 @@ class ProcessingElement(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        kind = {1: OnePortDepthTest, 2: TwoPortDepthTest}[configuration.memory_ports]
-        self.depth_test = kind(configuration=configuration)
+        bits = memory_bus_bits(configuration)
+        self.depth_test = (OnePortDepthTest(**bits, lanes=depth_lanes(configuration))
+                           if configuration.memory_ports == 1 else TwoPortDepthTest(**bits))
         self._queue = BroadcastQueue(configuration=configuration)
-        self._control = ProcessingElementControl(configuration=configuration)
+        self._control = ProcessingElementControl(id_bits=configuration.id_bits,
+                                                 depth_bits=configuration.depth_bits)
         self._rasteriser = TriangleSpans(configuration=configuration)
         self._spans = fifo.SyncFIFO(width=span_layout(configuration).size, depth=SPANS_WAITING)
         self._stepper = FragmentStepper(configuration=configuration)
         self._interpolator = Interpolator(configuration=configuration)
-        self._survey = Survey(configuration=configuration)
-        self._read_back = DepthReadBack(configuration=configuration)
+        self._survey = Survey(**bits)
+        self._read_back = DepthReadBack(**bits)
         self._link = ResponseLink()
         self._picture = PixelAddress(configuration=configuration)
-        self._selector = MemoryBusSelector(configuration=configuration)
+        self._selector = MemoryBusSelector(**bits)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),

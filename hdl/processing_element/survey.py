@@ -4,7 +4,6 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import MemoryBus
 
 __all__ = ["Survey"]
@@ -19,6 +18,8 @@ class Survey(wiring.Component):
 
     Latency, from ``start``: eight clocks a unit, plus the waits for scan slots;
     then four at the unit that does not answer, or one when all have.
+
+    Parameters: those of ``MemoryBus``.
 
     Members
     -------
@@ -35,20 +36,23 @@ class Survey(wiring.Component):
     Fuchs & Johnson, step (b) after figure 12.
     """
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
+    def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
+        self.id_bits = id_bits
+        self.address_bits = address_bits
+        self.depth_bits = depth_bits
+        memory = MemoryBus(id_bits=id_bits, address_bits=address_bits, depth_bits=depth_bits)
         super().__init__({
-            "first": In(configuration.id_bits),
-            "total": In(configuration.id_bits),
+            "first": In(id_bits),
+            "total": In(id_bits),
             "start": In(1),
             "done": Out(1),
-            "end": Out(configuration.id_bits),
-            "memory": Out(MemoryBus(configuration)),
+            "end": Out(id_bits),
+            "memory": Out(memory),
         })
 
     def elaborate(self, platform):
         m = Module()
-        depth_bits = self.configuration.depth_bits
+        depth_bits = self.depth_bits
         memory = self.memory
         second = Signal()  # the complement's turn
         pattern = Signal(depth_bits)

@@ -10,6 +10,7 @@ from ...golden.specification.ranges import CHANNEL_BITS
 from ..arithmetic.delay import delayed
 from ..arithmetic.limb_products import limb_products, side_by_side
 from ..arithmetic.narrowing import floor_shift, saturate, to_signed
+from ..backplane.connectors import memory_bus_bits
 from ..backplane.words import planes_layout
 from ..mapping.interlace import PixelAddress
 from .fragment_stepper import pixel_layout
@@ -17,13 +18,13 @@ from .fragment_stepper import pixel_layout
 __all__ = ["Interpolator", "fragment_layout"]
 
 
-def fragment_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """One pixel of one primitive, as it meets the memory."""
+def fragment_layout(*, id_bits: int, address_bits: int, depth_bits: int) -> data.StructLayout:
+    """One pixel of one primitive, as it meets the memory; widths as those of the ``MemoryBus``."""
     return data.StructLayout({
-        "unit": unsigned(configuration.id_bits),
-        "address": unsigned(configuration.address_bits),
-        "depth": unsigned(configuration.depth_bits),
-        "color": unsigned(3 * CHANNEL_BITS),
+        "unit": id_bits,
+        "address": address_bits,
+        "depth": depth_bits,
+        "color": 3 * CHANNEL_BITS,
     })
 
 
@@ -67,7 +68,8 @@ class Interpolator(wiring.Component):
             "total": In(configuration.id_bits),
             "pixels": In(stream.Signature(pixel_layout(configuration))),
             "planes": In(stream.Signature(planes_layout(configuration))),
-            "fragments": Out(stream.Signature(fragment_layout(configuration))),
+            "fragments": Out(stream.Signature(
+                fragment_layout(**memory_bus_bits(configuration)))),
             "busy": Out(1),
         })
 

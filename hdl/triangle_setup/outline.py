@@ -35,7 +35,7 @@ def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
                                        "second": signed(value + 1)})
               for name, value in interpolants(configuration).items()}
     return data.StructLayout({
-        "box": box_layout(configuration),
+        "box": box_layout(grid_layout(configuration)),
         "clockwise": 1,
         "double_area": 2 * bits,
         "x": signed(bits), "y": signed(bits),
@@ -74,7 +74,9 @@ class TriangleOutline(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self._sort = VertexSort(configuration=configuration)
-        self._pixels = PixelBox(configuration=configuration)
+        self._pixels = PixelBox(grid=grid_layout(configuration),
+                                coordinate_bits=configuration.coordinate_bits,
+                                sub_bits=configuration.sub_bits)
         difference = configuration.coordinate_bits + 1
         self._area = PipelinedMultiplier(a_bits=difference, b_bits=difference, pairs=2)
         super().__init__({

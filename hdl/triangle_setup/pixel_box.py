@@ -4,15 +4,15 @@ from amaranth.hdl import *
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MachineConfiguration
-from .sampling_grid import grid_layout
-
 __all__ = ["PixelBox", "box_layout"]
 
 
-def box_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """As in ``golden.reference.triangle_setup.PreparedTriangles``."""
-    rows, columns = configuration.y_bits, configuration.x_bits
+def box_layout(grid: data.StructLayout) -> data.StructLayout:
+    """Rows and columns of pixels, as in ``golden.reference.triangle_setup.PreparedTriangles``.
+
+    ``grid``: as ``grid_layout`` gives it.
+    """
+    rows, columns = grid["height"].width, grid["width"].width
     return data.StructLayout({"top": rows, "middle": rows, "bottom": rows,
                               "left": columns, "right": columns})
 
@@ -20,9 +20,16 @@ def box_layout(configuration: MachineConfiguration) -> data.StructLayout:
 class PixelBox(wiring.Component):
     """For each of five coordinates the first pixel whose centre is not before it.
 
-    Held to the screen: 0 … width or height.
+    Pixels are held to the screen: 0 … width or height.
 
     Latency: ``latency`` clocks.  Throughput: a triangle a clock; nothing stalls.
+
+    Parameters
+    ----------
+    grid: StructLayout
+        As ``grid_layout`` gives it.
+    coordinate_bits, sub_bits: int, positive
+        Of a vertex coordinate, and how many of them are sub-pixel bits.
 
     Members
     -------
@@ -33,16 +40,22 @@ class PixelBox(wiring.Component):
         The pixels.
     empty: Out(1)
         No centre lies in the box.
+
+    Raises ``ValueError`` where a number of bits is not positive.
     """
 
     latency = 3
 
-    def __init__(self, *, configuration: MachineConfiguration):
-        self.configuration = configuration
-        self._box = box_layout(configuration)
-        coordinate = signed(configuration.coordinate_bits)
+    def __init__(self, *, grid: data.StructLayout, coordinate_bits: int, sub_bits: int):
+        for name, bits in (("coordinate_bits", coordinate_bits), ("sub_bits", sub_bits)):
+            if bits < 1:
+                raise ValueError(f"{name} must be positive, not {bits!r}")
+        self.coordinate_bits = coordinate_bits
+        self.sub_bits = sub_bits
+        self._box = box_layout(grid)
+        coordinate = signed(coordinate_bits)
         super().__init__({
-            "grid": In(grid_layout(configuration)),
+            "grid": In(grid),
             **dict.fromkeys(self._box.members, In(coordinate)),
             "box": Out(self._box),
             "empty": Out(1),
@@ -56,12 +69,12 @@ class PixelBox(wiring.Component):
             shift, limit = ((self.grid.x_shift, self.grid.width) if name in ("left", "right") else
                             (self.grid.y_shift, self.grid.height))
             # ceil((c - unit/2) / unit) = floor((c + unit/2 - 1) / unit), unit a power of two.
-            sub_bits = self.configuration.sub_bits
-            half = C(1 << (sub_bits - 1)) << shift
+            half = C(1 << (self.sub_bits - 1)) << shift
             moved = coordinate + half - 1
-            pixel = Signal((moved >> sub_bits).shape(), name=f"{name}_pixel", reset_less=True)
+            pixel = Signal((moved >> self.sub_bits).shape(), name=f"{name}_pixel",
+                           reset_less=True)
             m.d.sync += [
-                pixel.eq(moved >> sub_bits >> shift),
+                pixel.eq(moved >> self.sub_bits >> shift),
                 held[name].eq(Mux(pixel < 0, 0, Mux(pixel > limit, limit, pixel))),
             ]
         m.d.sync += [

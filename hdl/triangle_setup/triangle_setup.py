@@ -14,7 +14,6 @@ from ..arithmetic.delay import delayed
 from ..backplane.words import prepared_triangle_layout, struct_layout
 from .edge_setup import EdgeSetup, position_bits
 from .outline import TriangleOutline, outline_layout
-from .pixel_box import box_layout
 from .plane_setup import PlaneSetup, Slot
 from .result_queue import ResultQueue
 from .sampling_grid import SamplingGrid
@@ -223,7 +222,7 @@ class TriangleSetup(wiring.Component):
         other clock, still sooner than triangles come.
         """
         triangle = Signal(self.triangles.payload.shape())
-        head = data.StructLayout({"box": box_layout(self.configuration), "clockwise": 1,
+        head = data.StructLayout({"box": outline.box.shape(), "clockwise": 1,
                                   "color": outline.color.shape()})
         m.submodules.head_queue = heads = fifo.SyncFIFOBuffered(width=head.size, depth=self.depth)
         popped = data.View(head, heads.r_data)

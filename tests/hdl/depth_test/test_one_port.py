@@ -5,6 +5,7 @@ import random
 from itertools import cycle
 
 import pytest
+from hdl_bench.bench import rejects
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
@@ -14,6 +15,7 @@ from hdl_bench.depth_tests import (
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import pauses
 
+from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.depth_test.one_port import OnePortDepthTest
 
 CONFIGURATION = small_machine("PMMMM", 16, 16)
@@ -24,8 +26,8 @@ class Run(DepthTestRun):
     """In order in each lane.  ``clocks`` are those from the first fragment to the last access."""
 
     def __init__(self, fragments, *, configuration=CONFIGURATION, **settings):
-        self.dut = dut = OnePortDepthTest(configuration=configuration)
-        super().__init__(dut, fragments, after=12 * 40, **settings)
+        self.dut = dut = COMPONENTS["one_port_depth_test"](configuration)
+        super().__init__(dut, fragments, words=configuration.words, after=12 * 40, **settings)
         memory, busy = self.memory, self.busy
         places = [(item["unit"], item["address"]) for item in fragments]
         for parity in range(2):
@@ -138,4 +140,10 @@ def test_units_of_one_lane_take_a_visible_fragment_a_clock():
 
 
 def test_a_clear_in_between_is_seen():
-    sees_a_clear_in_between(OnePortDepthTest(configuration=CONFIGURATION), 1, 12)
+    sees_a_clear_in_between(COMPONENTS["one_port_depth_test"](CONFIGURATION), 1, 12, words=WORDS)
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("lanes", 0), ("lanes", 3), ("depth_bits", 0)])
+def test_bad_sizes(name, wrong):
+    sizes = {"id_bits": 3, "address_bits": 6, "depth_bits": 8, "lanes": 2}
+    rejects(OnePortDepthTest, name, **sizes | {name: wrong})

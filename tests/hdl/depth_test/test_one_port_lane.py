@@ -1,6 +1,7 @@
 """Read, compare, write: against a dictionary, fragment by fragment."""
 
 import pytest
+from hdl_bench.bench import rejects
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
@@ -10,18 +11,17 @@ from hdl_bench.depth_tests import (
     on_one_pixel_in_consecutive_clocks,
     sees_a_clear_in_between,
 )
-from hdl_bench.pictures import small_machine
 from hdl_bench.streams import pauses
 
 from cardcage.hdl.depth_test.one_port_lane import OnePortLane
 
-CONFIGURATION = small_machine("PMMMM", 8, 8)
-WORDS = CONFIGURATION.words
+WORDS = 16
+BITS = {"id_bits": 3, "address_bits": 4, "depth_bits": 8}
 
 
 def draw(fragments, *, units=2, **settings):
     """In order: a read as it is taken, a write of each winner."""
-    run = DepthTestRun(OnePortLane(configuration=CONFIGURATION), fragments, units=units, **settings)
+    run = DepthTestRun(OnePortLane(**BITS), fragments, units=units, words=WORDS, **settings)
     places = [(item["unit"], item["address"]) for item in fragments]
     memory, taken, busy = run.memory, run.source.taken, run.busy
     assert [write[1:] for write in memory.writes] == [places[number] for number in run.winners]
@@ -105,4 +105,9 @@ def test_one_unit_takes_two_accesses_for_a_visible_fragment():
 
 @pytest.mark.parametrize("unit", [0, 1])
 def test_a_clear_in_between_is_seen(unit):
-    sees_a_clear_in_between(OnePortLane(configuration=CONFIGURATION), unit, 8)
+    sees_a_clear_in_between(OnePortLane(**BITS), unit, 8, words=WORDS)
+
+
+@pytest.mark.parametrize("name", BITS)
+def test_bad_sizes(name):
+    rejects(OnePortLane, name, **BITS | {name: 0})

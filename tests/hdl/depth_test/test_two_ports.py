@@ -1,6 +1,7 @@
 """Read, compare, write without ever waiting: against a dictionary, fragment by fragment."""
 
 import pytest
+from hdl_bench.bench import rejects
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
@@ -10,20 +11,19 @@ from hdl_bench.depth_tests import (
     on_one_pixel_in_consecutive_clocks,
     sees_a_clear_in_between,
 )
-from hdl_bench.pictures import small_machine
 from hdl_bench.streams import no_pause, pauses
 
 from cardcage.hdl.depth_test.two_ports import TwoPortDepthTest
 
-CONFIGURATION = small_machine("PMMMM", 8, 8, memory_ports=2)
-WORDS = CONFIGURATION.words
+WORDS = 16
+BITS = {"id_bits": 3, "address_bits": 4, "depth_bits": 8}
 LATENCY = TwoPortDepthTest.latency
 
 
 def draw(fragments, *, units=2, **settings):
     """What is read in the clock in which it is written is random there."""
-    run = DepthTestRun(TwoPortDepthTest(configuration=CONFIGURATION), fragments, units=units,
-                       after=8, ports=2, **settings)
+    run = DepthTestRun(TwoPortDepthTest(**BITS), fragments, units=units, words=WORDS, after=8,
+                       ports=2, **settings)
     places = [(item["unit"], item["address"]) for item in fragments]
     taken, busy = run.source.taken, run.busy
     # Read in the clock in which it is taken, written LATENCY later, whatever comes.
@@ -73,4 +73,9 @@ def test_ties_keep_the_first():
 
 
 def test_a_clear_in_between_is_seen():
-    sees_a_clear_in_between(TwoPortDepthTest(configuration=CONFIGURATION), 1, 8)
+    sees_a_clear_in_between(TwoPortDepthTest(**BITS), 1, 8, words=WORDS)
+
+
+@pytest.mark.parametrize("name", BITS)
+def test_bad_sizes(name):
+    rejects(TwoPortDepthTest, name, **BITS | {name: 0})

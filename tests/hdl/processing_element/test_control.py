@@ -4,14 +4,12 @@ import random
 
 import pytest
 from hdl_bench.bench import Agent, Watch, simulate
-from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.processing_element.control import ProcessingElementControl
 
-CONFIGURATION = small_machine("PMMMM")
 SERVICES = {"survey": "surveying", "read_back": "reading"}
 FIRST, END, FRAGMENTS, BUSY = 1, 4, 0x89ABCDEF, 0x01234567
 DEPTHS = [17, 0, 255, 128, 3]
@@ -98,7 +96,7 @@ STARTS = {Operation.SURVEY: "survey", Operation.READ_DEPTH: "read_back"}
 
 
 def run(kinds, *, pause=(no_pause,) * 2, hold=lambda: 0, time=lambda: 2):
-    dut = ProcessingElementControl(configuration=CONFIGURATION)
+    dut = ProcessingElementControl(id_bits=3, depth_bits=8)
     answers = [answer for kind in kinds for answer in RESPONSES.get(kind, ())]
     # As numbers: also one that has no name.
     source = Source(dut.operations, [getattr(kind, "value", kind) for kind in kinds], pause[0])

@@ -3,18 +3,17 @@
 import pytest
 from hdl_bench.bench import Drive, Service, simulate
 from hdl_bench.memory import MemoryLines
-from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, no_pause, pauses
 
 from cardcage.hdl.processing_element.depth_read_back import DepthReadBack
 
-CONFIGURATION = small_machine("PMMMM", 8, 8)
+WORDS = 16
 
 
 def read_back(first, end, words, *, scan=0.0, seed=0, rounds=1, pause=no_pause, gap=no_pause):
-    dut = DepthReadBack(configuration=CONFIGURATION)
-    memory = MemoryLines(dut.memory, first=first, end=end, words=CONFIGURATION.words,
-                         depth_bits=CONFIGURATION.depth_bits, seed=seed, scan=scan)
+    dut = DepthReadBack(id_bits=3, address_bits=4, depth_bits=8)
+    memory = MemoryLines(dut.memory, first=first, end=end, words=WORDS, depth_bits=8,
+                         seed=seed, scan=scan)
 
     def inputs(ctx, clock):
         ctx.set(dut.first, first)

@@ -4,7 +4,6 @@ import random
 
 from amaranth.hdl import Value
 from hdl_bench.bench import evaluate
-from hdl_bench.pictures import small_machine
 
 from cardcage.hdl.processing_element.memory_bus_selector import MemoryBusSelector
 
@@ -13,7 +12,7 @@ SOURCES = ("depth_test", "survey", "read_back")
 
 
 def test_the_one_whose_turn_it_is_has_the_lines():
-    dut = MemoryBusSelector(configuration=small_machine("PMM"))
+    dut = MemoryBusSelector(id_bits=2, address_bits=6, depth_bits=8)
     pick = random.Random("lines")
 
     def scramble(ctx, target):

@@ -5,15 +5,13 @@ import random
 import pytest
 from hdl_bench.bench import Drive, Service, simulate
 from hdl_bench.memory import MemoryLines
-from hdl_bench.pictures import small_machine
 from hdl_bench.streams import no_pause, pauses
 
 from cardcage.hdl.processing_element.survey import Survey
 
 
 def survey(first, end, total, *, depth_bits=8, scan=0.0, seed=0, rounds=1, pause=no_pause):
-    configuration = small_machine("PM", maximum_units=16, depth_bits=depth_bits)
-    dut = Survey(configuration=configuration)
+    dut = Survey(id_bits=5, address_bits=4, depth_bits=depth_bits)
     memory = MemoryLines(dut.memory, first=first, end=end, words=1, depth_bits=depth_bits,
                          seed=seed, scan=scan)
 
@@ -64,8 +62,7 @@ def test_random_domains_while_the_scan_takes_ports(seed, depth_bits):
 @pytest.mark.parametrize("level", [0, 1])
 def test_a_unit_with_a_stuck_bit_is_not_found(stuck, level):
     """Not one that a single pattern would have let pass."""
-    configuration = small_machine("PM", maximum_units=16)
-    dut = Survey(configuration=configuration)
+    dut = Survey(id_bits=5, address_bits=4, depth_bits=8)
 
     class Stuck(MemoryLines):
         def drive(self, ctx):

@@ -1,10 +1,11 @@
 """Boxes of pixel centres for every coordinate, by looking at the centres."""
 
 import pytest
-from hdl_bench.bench import Agent, simulate
+from hdl_bench.bench import Agent, rejects, simulate
 from hdl_bench.pictures import small_machine
 
 from cardcage.hdl.triangle_setup.pixel_box import PixelBox
+from cardcage.hdl.triangle_setup.sampling_grid import grid_layout
 
 SIDES = ("top", "middle", "bottom", "left", "right")
 
@@ -57,6 +58,13 @@ class Boxes(Agent):
     {}, {"sub_bits": 1, "width": 5}, {"words": 16}, {"words": 32}, {"words": 1, "sub_bits": 3}])
 def test_every_coordinate(changes):
     configuration = small_machine("PM", **changes)
-    dut = PixelBox(configuration=configuration)
+    dut = PixelBox(grid=grid_layout(configuration), sub_bits=configuration.sub_bits,
+                   coordinate_bits=configuration.coordinate_bits)
     assert dut.latency == 3
     simulate(dut, Boxes(dut, configuration))
+
+
+@pytest.mark.parametrize("name", ["coordinate_bits", "sub_bits"])
+def test_bad_widths(name):
+    grid = grid_layout(small_machine("PM"))
+    rejects(PixelBox, name, **{"grid": grid, "coordinate_bits": 8, "sub_bits": 2} | {name: 0})

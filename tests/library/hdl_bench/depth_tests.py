@@ -52,19 +52,18 @@ def on_one_pixel_after(gap, between):
 
 
 class DepthTestRun:
-    """Draws ``fragments`` into the first ``units`` units, and compares all memory afterwards.
+    """Draws ``fragments`` into the first ``units`` units of ``words`` words each, and compares all
+    memory afterwards.
 
     ``background`` is in memory before, or random depths; ``settings`` are those of
     ``MemoryLines``.  Attributes: ``source``, ``memory``, the numbers of the ``winners``, ``busy``
     by clock, how often a depth was ``forwarded``.
     """
 
-    def __init__(self, dut, fragments, *, units, pause=no_pause, background=None, after=40,
+    def __init__(self, dut, fragments, *, units, words, pause=no_pause, background=None, after=40,
                  **settings):
-        configuration = dut.configuration
-        self.memory = memory = MemoryLines(
-            dut.memory, first=0, end=units, words=configuration.words,
-            depth_bits=configuration.depth_bits, **settings)
+        self.memory = memory = MemoryLines(dut.memory, first=0, end=units, words=words,
+                                           depth_bits=dut.depth_bits, **settings)
         if background is not None:
             memory.depth = dict.fromkeys(memory.depth, background)
         depth, color, self.winners = dict(memory.depth), dict(memory.back), []
@@ -96,10 +95,9 @@ def keeps_the_first_of_ties(draw):
     assert not draw([fragment(0, 5, 77, 1)], 77).memory.writes
 
 
-def sees_a_clear_in_between(dut, unit, gap):
+def sees_a_clear_in_between(dut, unit, gap, *, words):
     """Once it is not busy, what it wrote is forgotten: the memory may be cleared."""
-    memory = MemoryLines(dut.memory, first=0, end=2, words=dut.configuration.words,
-                         depth_bits=dut.configuration.depth_bits)
+    memory = MemoryLines(dut.memory, first=0, end=2, words=words, depth_bits=dut.depth_bits)
     memory.depth = dict.fromkeys(memory.depth, 255)
     source = Source(dut.fragments, [fragment(unit, 4, 10, 1), fragment(unit, 4, 200, 2)],
                     lambda: gap)

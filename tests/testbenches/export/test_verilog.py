@@ -6,6 +6,7 @@ import pytest
 from verilog_tools import icarus, verilator_lint, yosys
 
 from cardcage.golden.planning.machines import preset
+from cardcage.hdl.backplane.connectors import memory_bus_bits
 from cardcage.hdl.backplane.words import planes_layout, span_layout, walked_outline_layout
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.rasteriser.interpolator import fragment_layout
@@ -154,7 +155,7 @@ def test_description(texts):
     memories = {"memory_16384x84_lanes_3_no_rw_check": 16,
                 f"memory_15x{kept.size}": 4, f"memory_15x{planes_layout(configuration).size}": 4,
                 # Before each of two lanes.
-                f"memory_15x{fragment_layout(configuration).size}": 8,
+                f"memory_15x{fragment_layout(**memory_bus_bits(configuration)).size}": 8,
                 # Its read is not clocked: look-up tables, not block RAM.
                 f"memory_16x{spans.size}_asynchronous_read": 4}
     assert {memory["module"]: memory["instances"] for memory in facts["memories"]} == memories
