@@ -13,7 +13,8 @@ from ..backplane.words import (
     row_shape,
     walked_outline_layout,
 )
-from ..mapping.lattice import first_owned, lattice_layout, next_owned, rows_mask
+from ..mapping.lattice import next_owned
+from .share_filter import ShareFilter
 
 __all__ = ["BroadcastQueue"]
 
@@ -21,12 +22,9 @@ __all__ = ["BroadcastQueue"]
 class BroadcastQueue(wiring.Component):
     """Takes what concerns this processing element, and gives it back in order.
 
-    A triangle whose bounding box holds no pixel of the lattice is passed over as
-    it is announced, and costs nothing; where the domain is no single lattice all
-    are kept.  Of a lattice with shifted rows, one whose box holds their columns is
-    kept, in whichever row.  Rows and edges wait apart from the interpolants: those
-    are needed later, pixel by pixel, and stay at their output until a triangle's
-    last one.
+    A triangle that ``ShareFilter`` drops is passed over as it is announced, and costs
+    nothing.  Rows and edges wait apart from the interpolants: those are needed later,
+    pixel by pixel, and stay at their output until a triangle's last one.
 
     Anything but a triangle waits in a place of its own.  Nothing is taken behind it
     until it is gone, so it comes after the triangles before it and before those
@@ -42,12 +40,12 @@ class BroadcastQueue(wiring.Component):
     ready: Out(1)
         There is room.
     lattice: In(lattice_layout), whole: In(1)
-        The pixels of the domain, where it is one block of units.
+        The pixels of the domain, where it is one block of units (``ShareFilter``).
     triangles: Out(stream of walked_outline_layout)
     planes: Out(stream of planes_layout)
-        Of the triangles, each at least as early as its outline.
+        The triangles' interpolants, each at least as early as its outline.
     operations: Out(stream of Operation)
-        What is no triangle; all triangles before it, and their interpolants, have been taken.
+        Whatever is no triangle; all triangles before it, and their interpolants, have been taken.
     empty: Out(1)
         Nothing waits.
 
@@ -60,12 +58,12 @@ class BroadcastQueue(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        self._filter = ShareFilter(configuration=configuration)
         super().__init__({
             "strobe": In(1),
             "packet": In(broadcast_layout(configuration)),
             "ready": Out(1),
-            "lattice": In(lattice_layout(configuration)),
-            "whole": In(1),
+            **self._filter.members,
             "triangles": Out(stream.Signature(walked_outline_layout(configuration))),
             "planes": Out(stream.Signature(planes_layout(configuration))),
             "operations": Out(stream.Signature(Operation, payload_init=Operation.SURVEY)),
@@ -84,11 +82,8 @@ class BroadcastQueue(wiring.Component):
         m.submodules.planes = planes = fifo.SyncFIFOBuffered(
             width=planes_layout(configuration).size, depth=places)
 
-        triangle, lattice = packet.body.draw, self.lattice
+        triangle = packet.body.draw
         is_triangle = packet.operation == Operation.DRAW
-        first_row = first_owned(triangle.top, lattice.y_offset, lattice.y_mask, square_bits)
-        first_column = first_owned(triangle.left, lattice.x_offset,
-                                   rows_mask(lattice, configuration), square_bits)
         kept = Signal(outline_layout(configuration), reset_less=True)
         kept_row = Signal(row_shape(configuration), reset_less=True)
         second_row = Signal(row_shape(configuration), reset_less=True)
@@ -97,23 +92,21 @@ class BroadcastQueue(wiring.Component):
         assert len(outline) + planes_layout(configuration).size == triangle.shape().size
 
         arrived = Signal()
-        in_rows = Signal()
-        in_columns = Signal()
         waits = Signal()
         drained = Signal()
         operation = self.operations
         # A triangle's interpolants are there as long as its outline, and longer.
         m.d.sync += drained.eq((planes.level == 0) & ~self.strobe & ~arrived)
+        m.d.sync += arrived.eq(self.strobe & is_triangle)
+        share = self._filter.add_to(m, triangle, self)
+        assert self._filter.latency == 1  # that of `arrived` and `kept`
         m.d.sync += [
-            arrived.eq(self.strobe & is_triangle),
-            in_rows.eq(first_row < triangle.bottom),
-            in_columns.eq(first_column < triangle.right),
             kept.eq(outline),
-            kept_row.eq(first_row),
+            kept_row.eq(share.first_row),
             planes.w_data.eq(triangle.planes),
         ]
         m.d.comb += [
-            second_row.eq(next_owned(kept_row, lattice.y_mask, square_bits)),
+            second_row.eq(next_owned(kept_row, self.lattice.y_mask, square_bits)),
             triangles.w_data.eq(Cat(kept, kept_row, second_row, second_row >= kept.bottom)),
         ]
         with m.If(self.strobe & ~is_triangle):
@@ -123,7 +116,7 @@ class BroadcastQueue(wiring.Component):
         m.d.comb += [
             # Room for this word and for one that has just arrived.
             self.ready.eq((planes.level < depth - 1) & ~waits),
-            triangles.w_en.eq(arrived & (~self.whole | (in_rows & in_columns))),
+            triangles.w_en.eq(arrived & share.keep),
             planes.w_en.eq(triangles.w_en),
             operation.valid.eq(waits & drained),
             self.empty.eq(~waits & drained),

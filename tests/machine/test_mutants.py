@@ -57,8 +57,7 @@ MUTANTS = {
         "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
         "sum(words[1:], words[0])", "words[0]"),
     "a triangle kept from the element that has its last column": (
-        "processing_element.broadcast_queue", "BroadcastQueue",
-        ["processing_element.processing_element"],
+        "processing_element.share_filter", "ShareFilter", ["processing_element.broadcast_queue"],
         "< triangle.right", "< triangle.right - 1"),
     "ID chain does not count": (
         "backplane.id_increment", "IdIncrement", ["memory_unit.memory_unit"],
@@ -206,7 +205,7 @@ MUTANTS_SKEWED = {
         "mapping.lattice", "row_offset", ["rasteriser.span_clip"],
         "further = lattice.shifted &", "further = 0 &"),
     "a filter that looks for the columns of every other row": (
-        "mapping.lattice", "rows_mask", ["processing_element.broadcast_queue"],
+        "mapping.lattice", "rows_mask", ["processing_element.share_filter"],
         "lattice.x_mask >> 1, lattice.x_mask)", "lattice.x_mask, lattice.x_mask)"),
 }
 
