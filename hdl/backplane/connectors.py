@@ -1,14 +1,14 @@
 """The lines of the backplane: what every slot has, whatever card is in it.
 
-::
+``bus`` is the memory bus of a processing element (the member ``lines`` of a ``Connector``)::
 
       CBC ──broadcast──────┬───────────┬──────────┬──────────┬────────
                            │           │          │          │
            ┌─────┐  id   ┌─┴──┐  id  ┌─┴──┐ id+1┌─┴──┐ id+2┌─┴──┐
            │ CBC ├──────▶│ PE ├─────▶│ MU ├────▶│ MU ├────▶│ PE │ …  ──┐
            │     │◀──────┤    │◀════▶│    │◀═══▶│    │  ┆  │    │      │ total units
-           └─────┘ resp. └────┘ lines└─┬──┘     └─┬──┘  ┆  └────┘      │
-              ▲ total                  │          │     ┆ a PE ignores the lines from its left
+           └─────┘ resp. └────┘ bus  └─┬──┘     └─┬──┘  ┆  └────┘      │
+              ▲ total                  │          │     ┆ a PE ignores the bus from its left
               └────────────────────────┼──────────┼───────────────────┘
                                        │          │
       CBC ──pictures───────────────────┼──────────┼───────────────────
@@ -65,9 +65,13 @@ class MemoryBus(wiring.Signature):
 
     A read and a write can go to two different units in the same clock, or to one
     with two ports.  Each takes place in a clock in which its ``valid`` is high
-    and its busy line is low; a request that no unit answers is never busy.  A read
+    and its busy signal is low; a request that no unit answers is never busy.  A read
     sees every write that took place before it; what it sees of one in the same clock,
     which only units with two ports take, is unknown.  Those are never busy.
+
+    The answers of the units are wired or: a unit to which nothing is addressed drives 0
+    on all of them (``scanned`` excepted, which is no answer to anybody), and so does the
+    empty right end of the bus.
 
     Members
     -------
@@ -80,8 +84,8 @@ class MemoryBus(wiring.Signature):
     write_busy: In(1)
         The unit's one port is taken by the scan.
     scanned: In(2)
-        Known before any request: the one port of a unit with an even number is taken by the
-        scan, and of one with an odd number.
+        Known before any request: the scan takes the one port of a unit with an even number (bit
+        0), with an odd number (bit 1).
 
     Raises ``ValueError`` where a number of bits is not positive.
     """
@@ -110,7 +114,8 @@ class Connector(wiring.Signature):
     id: Out(id_bits)
         Memory units to the left (figures 10 and 11).
     lines: Out(MemoryBus)
-        Driven by the nearest processing element to the left.
+        The memory bus, driven by the nearest processing element to the left.  The member keeps
+        this name, and with it the ports of the exported Verilog.
     response: In(stream of response words)
         What the processing elements further right have to say to the controller.
     """
@@ -126,6 +131,10 @@ class Connector(wiring.Signature):
 class BroadcastLines(wiring.Signature):
     """The controller's lines to every processing element, and their wired answers.
 
+    ``done`` counts a strobe from ``settle_clocks + 1`` clocks after it on; until then it may
+    still be high.  A word takes that long through the queue of a processing element
+    (``BroadcastQueue.latency``), so the element may take note of it at either end.
+
     Members
     -------
     strobe: Out(1)
@@ -137,6 +146,8 @@ class BroadcastLines(wiring.Signature):
     done: In(1)
         It has finished everything it was told and sent all its responses (wired and over all).
     """
+
+    settle_clocks = 3
 
     def __init__(self, configuration: MachineConfiguration):
         super().__init__({
@@ -202,7 +213,8 @@ class ScanLines(wiring.Signature):
         Red in the low byte, then green, blue: from the unit that holds the shown pixel, if that
         has been drawn; others drive 0 (wired or).
     drawn: In(1)
-        It has been drawn since its frame started (wired or); the background else.
+        It has been drawn since its frame started, else the background is shown; units that do not
+        hold the shown pixel drive 0 (wired or).
     """
 
     def __init__(self, configuration: MachineConfiguration):

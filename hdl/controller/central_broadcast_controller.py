@@ -15,9 +15,6 @@ from .frame_tags import FrameTags
 
 __all__ = ["CentralBroadcastController"]
 
-#: Clocks until a strobe shows in ``done``: into the FIFO, and out of it.
-SETTLE_CLOCKS = 3
-
 
 class CentralBroadcastController(wiring.Component):
     """Takes commands from the host and tells all processing elements at once (figure 12).
@@ -52,7 +49,7 @@ class CentralBroadcastController(wiring.Component):
         A scan begins.
     pictures: Out(PictureLines)
     background: Out(24)
-        Of the picture shown: red in the low byte, then green, blue.
+        The background of the picture shown: red in the low byte, then green, blue.
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
     """
@@ -74,7 +71,7 @@ class CentralBroadcastController(wiring.Component):
         self._supported = Signal(name="supported")
         self._resolution = Signal(32, name="picture")
         # Clocks until ``done`` counts the last strobe.
-        self._settle = Signal(range(SETTLE_CLOCKS + 1), name="settle")
+        self._settle = Signal(range(BroadcastLines.settle_clocks + 1), name="settle")
         self._backgrounds = [Signal(3 * CHANNEL_BITS, name=f"background_{place}")
                              for place in range(2)]
         super().__init__({
@@ -160,11 +157,11 @@ class CentralBroadcastController(wiring.Component):
     # What goes on beside the commands.
 
     def _count(self, m):
-        """Clocks, scans, and clocks until a strobe shows in ``done``."""
+        """Clocks, scans, and clocks until ``done`` counts a strobe."""
         m.d.sync += [self._cycles.eq(self._cycles + 1),
                      self._frame_cycles.eq(self._frame_cycles + 1)]
         with m.If(self.broadcast.strobe):
-            m.d.sync += self._settle.eq(SETTLE_CLOCKS)
+            m.d.sync += self._settle.eq(BroadcastLines.settle_clocks)
         with m.Elif(self._settle != 0):
             m.d.sync += self._settle.eq(self._settle - 1)
         with m.If(self.scan_start):

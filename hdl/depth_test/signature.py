@@ -16,9 +16,10 @@ class DepthTestSignature(wiring.Signature):
     -------
     fragments: In(stream of fragment_layout)
     memory: Out(MemoryBus)
-        The write address is 0 from the second clock without ``busy`` on: the survey writes there.
+        The address of writes is 0 from the second clock without ``busy`` on, while no fragment
+        comes: the survey, which drives none, writes there (``MemoryBusSelector``).
     busy: Out(1)
-        Holds a fragment.
+        It holds a fragment.
     forwarded: Out(1)
         In this clock a depth that was on its way to the memory took the place of its answer.
     """

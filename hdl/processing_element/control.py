@@ -28,12 +28,13 @@ class ProcessingElementControl(wiring.Component):
     operations: In(stream of Operation)
         After the triangles before it have been taken; none follow until it is taken.
     drawing: In(1)
-        The datapath holds something.
+        The datapath holds something, or did a clock ago: once it is low, the depth test has been
+        idle for a clock and its write address is 0, as a survey needs it (``DepthTestSignature``).
     survey_start, read_back_start: Out(1)
     survey_done, read_back_done: In(1)
         The two services.
     surveying, reading: Out(1)
-        Who has the memory lines; the datapath when neither is high.
+        Who has the memory bus; the depth test when neither is high.
     frame_start: Out(1)
         Count from the next clock on.
     first, end: In(id_bits)

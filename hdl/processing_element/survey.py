@@ -13,7 +13,7 @@ class Survey(wiring.Component):
     """Writes and reads a word in each possible unit, from the first one on.
 
     A unit of the domain gives back what was written, twice, with every bit both
-    ways; where none answers, the lines read 0.  The units found are those up to
+    ways; where none answers, the bus reads 0.  The units found are those up to
     the first that does not answer.
 
     Latency, from ``start``: eight clocks a unit, plus the waits for scan slots;
@@ -24,7 +24,7 @@ class Survey(wiring.Component):
     Members
     -------
     first, total: In(id_bits)
-        From the lines: the first unit to the right, and the number of all.
+        From the backplane: the first unit to the right, and the number of all.
     start: In(1)
         Begin; ignored while surveying.
     done: Out(1)
@@ -32,6 +32,8 @@ class Survey(wiring.Component):
     end: Out(id_bits)
         First unit beyond the domain; ``first`` when there is none.
     memory: Out(MemoryBus)
+        Of a write it drives the unit and the depth only: whoever hands the bus on keeps the
+        address of writes at 0, where it reads (``MemoryBusSelector``).
 
     Fuchs & Johnson, step (b) after figure 12.
     """
@@ -58,7 +60,7 @@ class Survey(wiring.Component):
         pattern = Signal(depth_bits)
         answered = Signal()
         m.d.comb += [
-            # 1010…: neither this nor its complement is what silent lines read.
+            # 1010…: neither this nor its complement is what a silent bus reads.
             pattern.eq(Const(0xAAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
             memory.write.unit.eq(self.end),
             memory.read.unit.eq(self.end),

@@ -17,7 +17,9 @@ from hdl_bench.streams import Sink, Source, pauses
 
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.commands import ResponseKind
+from cardcage.hdl.backplane.connectors import BroadcastLines
 from cardcage.hdl.backplane.words import Operation
+from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
 from cardcage.hdl.processing_element.processing_element import ProcessingElement
 
 SURVEY = {"operation": Operation.SURVEY}
@@ -67,7 +69,7 @@ class Announcer(Agent):
             self.strobes.append(self.clock)
             self.wait = self.pause()
             if self.packets and self.packets[0] is None:
-                self.settle = 4
+                self.settle = BroadcastLines.settle_clocks + 1
 
     def sample(self, ctx):
         if self.strobes and self.strobes[-1] == self.clock - 1:
@@ -278,6 +280,12 @@ def test_the_fifo_holds_what_it_says():
         # The triangle being drawn is still in the FIFO, at its output.
         early = [clock for clock in strobes if clock < strobes[0] + 100]
         assert len(early) == depth
+
+
+def test_the_controller_looks_at_done_once_a_word_is_through_the_queue():
+    """The clocks that the backplane states are those that the queue takes; see ``Announcer``."""
+    assert BroadcastLines.settle_clocks == max(BroadcastQueue.latency,
+                                               BroadcastQueue.operation_latency)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -7,6 +7,7 @@ from itertools import pairwise
 from amaranth.hdl import Value
 
 from cardcage.golden.specification.commands import ResponseKind
+from cardcage.hdl.backplane.connectors import BroadcastLines
 from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.controller.central_broadcast_controller import CentralBroadcastController
 
@@ -21,7 +22,7 @@ class Cage(Agent):
     """All processing elements as one: takes packets while ready, works on each for a while,
     then sends its answers.  A strobe shows in done as late as the controller has to bear with."""
 
-    LATE = 3
+    LATE = BroadcastLines.settle_clocks
 
     def __init__(self, dut, *, domains, seed=None, work=0):
         self.dut = dut
