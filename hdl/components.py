@@ -75,7 +75,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
                                                tag_bits=c.tag_bits),
-    # That of a triangle's area.
+    # The one that computes the area of a triangle.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
         a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
     "pixel_address": lambda c: PixelAddress(configuration=c),

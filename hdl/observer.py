@@ -15,25 +15,25 @@ def activity_layout(elements: int) -> data.ArrayLayout:
 
 
 class ElementActivity(wiring.Component):
-    """Says what one processing element does.  It listens only.
+    """Says what one processing element does.  It only listens.
 
-    The reason for a clock without a fragment is what the walker did ``delay`` clocks
-    ago, when the fragment that is missing should have set out.  Stalls on the way
-    shift it by a few clocks.
+    The reason for a clock without a fragment is what the rasteriser (``TriangleSpans``) did
+    ``delay`` clocks ago, when the fragment that is missing should have set out.  Stalls
+    on the way shift it by a few clocks.
 
-    Latency: none.  Whoever has nothing to draw is put down as ``SETUP``;
-    ``MachineActivity`` knows better.
+    Latency: none.  An element without anything to draw is said to be in ``SETUP``;
+    ``MachineActivity`` tells why it has nothing.
 
     Members
     -------
     offered, taken: In(1)
-        A fragment is at the depth test; it takes it.
+        A fragment is at the depth test; the depth test takes it.
     scanned: In(1)
         The scan has the port that the fragment waits for.
     preparing, empty_row: In(1)
-        The walker prepares; it passes a row without pixels.
+        The rasteriser takes up a block of its domain; it passes a row without pixels.
     walking: In(1)
-        The walker has a triangle.
+        The rasteriser has a triangle.
     service: In(1)
         Something else than drawing goes on.
     activity: Out(4)
@@ -53,7 +53,7 @@ class ElementActivity(wiring.Component):
 
     @property
     def delay(self) -> int:
-        """Clocks from the walker to the depth test."""
+        """Clocks from the rasteriser to the depth test."""
         return self._delay
 
     def elaborate(self, platform):

@@ -25,7 +25,7 @@ class Divider(wiring.Component):
     Parameters
     ----------
     dividend_bits, divisor_bits, quotient_bits: int, positive
-        Of a signed dividend, an unsigned divisor, an unsigned quotient.
+        Widths of a signed dividend, an unsigned divisor, an unsigned quotient.
     fraction_bits: int, from 0
     interval: int, positive
         The most clocks a division may take of a stage.
@@ -58,7 +58,8 @@ class Divider(wiring.Component):
         self.fraction_bits = fraction_bits
         steps = max(dividend_bits + fraction_bits, quotient_bits)
         self._stages = -(-steps // interval)
-        # Stages of equal length: what are steps too many, less than one a stage, repeat the sign.
+        # Stages are of equal length.  So there may be steps too many, fewer than stages; they
+        # repeat the sign of the dividend.
         self._interval = -(-steps // self._stages)
         super().__init__({
             "start": In(1),

@@ -8,7 +8,7 @@ from .delay import delayed
 
 __all__ = ["LIMB_BITS", "limb_products", "side_by_side"]
 
-#: Operand bits of a multiplier block of an FPGA.
+#: Operand bits of a multiplier block of an FPGA (MULT18X18D of the ECP5).
 LIMB_BITS = 18
 
 

@@ -4,21 +4,20 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-__all__ = ["LIMB_BITS", "PipelinedMultiplier"]
+from .limb_products import LIMB_BITS
 
-#: A signed operand of a multiplier block; the lower limbs of a number have one less, and no sign.
-LIMB_BITS = 18
+__all__ = ["PipelinedMultiplier"]
 
 
 def _limbs(bits):
-    """Number of limbs of a signed number."""
+    """Number of limbs of a signed number: all but the highest give up a bit for their sign, 0."""
     return max(1, -(-(bits - 1) // (LIMB_BITS - 1)))
 
 
 class PipelinedMultiplier(wiring.Component):
     """a[0] · b[0] + a[1] · b[1] + …, of signed numbers.
 
-    Each operand is cut into limbs that fit a multiplier block (MULT18X18D of the ECP5);
+    Each operand is cut into limbs that fit a multiplier block of an FPGA (``LIMB_BITS``);
     operands and products end in registers, and so does each level of the adders that put the
     products together.
 
@@ -27,7 +26,7 @@ class PipelinedMultiplier(wiring.Component):
     Parameters
     ----------
     a_bits, b_bits: int, positive
-        Of each factor.
+        Widths of the factors.
     pairs: int, positive
         Products in the sum.
 
@@ -36,7 +35,7 @@ class PipelinedMultiplier(wiring.Component):
     a: In(signed(a_bits)), b: In(signed(b_bits))
         Arrays of ``pairs`` factors.
     sum: Out(signed(sum_bits))
-        Of the products.
+        The sum of the products.
     """
 
     def __init__(self, *, a_bits: int, b_bits: int, pairs: int = 1):

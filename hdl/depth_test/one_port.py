@@ -1,4 +1,4 @@
-"""The Z-buffer comparison of one-port memories: a lane, or two that share the lines (figure 3)."""
+"""The Z-buffer comparison of one-port memories: a lane, or two that share the bus (figure 3)."""
 
 from amaranth.hdl import *
 from amaranth.lib import fifo, wiring
@@ -16,9 +16,9 @@ class OnePortDepthTest(wiring.Component):
     A unit has one port, and a visible fragment two accesses.  So units with an even
     and with an odd number have a ``OnePortLane`` each, and fragments that wait for it:
     while one lane writes, the other reads.  The two never have a pixel in common.
-    In each clock the lines carry a write of a lane that has one, of both in turn, and
-    a read of the other lane; where nothing is written, of that with more waiting.  A
-    lane keeps still while the scan has the port of one of its units.
+    In each clock the memory bus carries a write of a lane that has one (of both in turn)
+    and a read of the other lane; where nothing is written, the lane with more fragments
+    waiting reads.  A lane keeps still while the scan has the port of one of its units.
 
     Where no processing element has more than one unit there is one lane, whose fragments
     wait, too: so its port has work while rows without fragments go by.
@@ -88,30 +88,30 @@ class OnePortDepthTest(wiring.Component):
         return levels
 
     def _share(self, m, lanes, levels):
-        """Which lane has the lines to write, and which to read."""
-        lines, even, odd = self.memory, *(lane.memory for lane in lanes)
-        turn = Signal()  # of the two, who writes if both can
+        """Which lane has the memory bus to write, and which to read."""
+        bus, even, odd = self.memory, *(lane.memory for lane in lanes)
+        turn = Signal()  # the lane that writes if both can
         writes = Signal(2)
         reads = Signal(2)
         writer = Signal()
         reader = Signal()
         rather = Signal()
         m.d.comb += [
-            writes.eq(Cat(even.write.valid, odd.write.valid) & ~lines.scanned),
-            reads.eq(Cat(even.read.valid, odd.read.valid) & ~lines.scanned),
+            writes.eq(Cat(even.write.valid, odd.write.valid) & ~bus.scanned),
+            reads.eq(Cat(even.read.valid, odd.read.valid) & ~bus.scanned),
             writer.eq(Mux(writes.all(), turn, writes[1])),
             rather.eq(Mux(writes.any(), ~writer, levels[1] > levels[0])),
             reader.eq(Mux(reads.all(), rather, reads[1])),
-            lines.write.eq(Mux(writer, odd.write, even.write)),
-            lines.write.valid.eq(writes.any()),
-            lines.read.eq(Mux(reader, odd.read, even.read)),
-            lines.read.valid.eq(reads.any()),
+            bus.write.eq(Mux(writer, odd.write, even.write)),
+            bus.write.valid.eq(writes.any()),
+            bus.read.eq(Mux(reader, odd.read, even.read)),
+            bus.read.valid.eq(reads.any()),
         ]
         with m.If(writes.any()):
             m.d.sync += turn.eq(~writer)
         for number, lane in enumerate((even, odd)):
             m.d.comb += [
-                lane.read_data.eq(lines.read_data),
-                lane.write_busy.eq(lines.write_busy | ~writes[number] | (writer != number)),
-                lane.read_busy.eq(lines.read_busy | ~reads[number] | (reader != number)),
+                lane.read_data.eq(bus.read_data),
+                lane.write_busy.eq(bus.write_busy | ~writes[number] | (writer != number)),
+                lane.read_busy.eq(bus.read_busy | ~reads[number] | (reader != number)),
             ]

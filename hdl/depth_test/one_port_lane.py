@@ -50,7 +50,7 @@ class OnePortLane(wiring.Component):
         comparing = Signal()
         winning = Signal()
         has_written = Signal()
-        fresh = Signal()  # the answer is on the lines in this clock only
+        fresh = Signal()  # the answer is on the memory bus in this clock only
         held = Signal(self.depth_bits)
         stored = Signal(self.depth_bits)
 
@@ -92,12 +92,13 @@ class OnePortLane(wiring.Component):
         ]
         with m.If(write_moves):
             m.d.sync += [winning.eq(comparing & (compare.depth < nearest)), write.eq(compare)]
-            with m.If(~comparing):
+            with m.If(~comparing):  # the idle bus has address 0, as the signature says
                 m.d.sync += write.address.eq(0)
             with m.If(winning):
                 m.d.sync += [has_written.eq(1), written.eq(write)]
         with m.If(~self.busy):
-            # Every later read sees the write in memory, until something else clears it there.
+            # Every later read sees the write in memory.  It must be forgotten here: a new frame,
+            # which starts when nothing is busy, makes the word background.
             m.d.sync += has_written.eq(0)
         m.d.comb += [
             memory.write.valid.eq(winning),

@@ -22,8 +22,8 @@ class TwoPortDepthTest(wiring.Component):
     Latency: ``latency`` clocks from a fragment's read to its write.  Throughput:
     a fragment a clock, visible or not.
 
-    Parameters and members: those of ``DepthTestSignature``.  ``fragments`` is always ready, the
-    memory's busy lines are not looked at.
+    Parameters and members: those of ``DepthTestSignature``.  ``fragments`` is always ready, and
+    the busy signals of the memory bus are not looked at.
     """
 
     latency = 3
@@ -84,6 +84,6 @@ class TwoPortDepthTest(wiring.Component):
             was_winning.eq(winning),
             written.eq(write),
         ]
-        with m.If(~comparing):
+        with m.If(~comparing):  # the idle bus has address 0, as the signature says
             m.d.sync += write.address.eq(0)
         return m

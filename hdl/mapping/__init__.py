@@ -1,1 +1,1 @@
-"""Which pixel belongs to whom, as each board computes it from the lines."""
+"""Which pixel belongs to whom, as each board computes it from what the backplane says."""

@@ -1,4 +1,4 @@
-"""Pixel ↔ unit arithmetic, as each board does it from the lines alone (figures 13 and 14)."""
+"""Pixel ↔ unit arithmetic, as each board does it from the backplane alone (figures 13, 14)."""
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
@@ -60,7 +60,7 @@ class PixelAddress(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         interlaces = self.configuration.interlaces()
-        # Rows of so many words lie side by side without arithmetic.
+        # Rows whose words are a power of two lie side by side without arithmetic.
         aligned = all(interlace.pitch.bit_count() == 1 for interlace in interlaces)
         row = Signal.like(self.y)
         column = Signal.like(self.x)

@@ -34,7 +34,7 @@ def lattice_layout(configuration: MachineConfiguration) -> data.StructLayout:
 
 
 def row_offset(lattice: data.View, y: Value, configuration: MachineConfiguration) -> Value:
-    """Of an owned row, the first owned square's column."""
+    """The column of the first owned square in an owned row."""
     if not configuration.skew:
         return lattice.x_offset
     # Both distances are powers of two.
@@ -43,7 +43,7 @@ def row_offset(lattice: data.View, y: Value, configuration: MachineConfiguration
 
 
 def rows_mask(lattice: data.View, configuration: MachineConfiguration) -> Value:
-    """As ``x_mask``, of the owned squares of all rows together."""
+    """What ``x_mask`` would be if a column that some row owns were owned in every row."""
     if not configuration.skew:
         return lattice.x_mask
     return Mux(lattice.shifted, lattice.x_mask >> 1, lattice.x_mask)
@@ -117,7 +117,8 @@ class LatticeBlock(wiring.Component):
                 with m.Case(interlace.units):
                     sources = list(reversed(interlace.bit_order))
                     if interlace.skew_bit is not None:
-                        # Of a block of one unit, where the bit of y is 0; masked out of others.
+                        # A block of one unit, whose rows are shifted: this is the offset of its
+                        # rows with a 0 in the bit of y.  Larger blocks mask it out.
                         sources[0] = "x", interlace.skew_bit
                     for place, (axis, bit) in enumerate(sources):
                         offset = self.lattice.x_offset if axis == "x" else self.lattice.y_offset

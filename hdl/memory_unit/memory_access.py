@@ -14,7 +14,7 @@ class MemoryAccess(wiring.Signature):
     """Four users of one RAM, in order of precedence; ``Out`` is towards the RAM.
 
     A word has the parts of ``PARTS`` (figure 6): depth, and two colours.  Each access takes
-    place in the clock in which it is asked for and its busy line is low; what it
+    place in the clock in which it is asked for and its busy signal is low; what it
     reads is there in the next clock, and in that one only.  What a read sees of a
     write of the same word in the same clock is unknown, and so is what a scan reads
     of the very colour that is written.  So are all contents after power-on.

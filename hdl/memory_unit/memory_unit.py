@@ -24,7 +24,7 @@ COMPARED_BITS = 4
 class MemoryUnit(wiring.Component):
     """Depth, front and back colour of the pixels that fall to its number (figures 6 to 11).
 
-    Its number and the total come from the lines alone.  With one port
+    Its number and the total come from the backplane alone.  With one port
     (``memory_ports``) each clock serves the scan generator, else a write of its
     processing element, else a read; whoever waits sees ``busy``.  With two nobody
     ever waits.  The scan's colour goes into an output register, so the processing
@@ -44,7 +44,7 @@ class MemoryUnit(wiring.Component):
     Members
     -------
     left: In(Connector), right: Out(Connector)
-        The neighbouring slots; lines and responses pass through.
+        The neighbouring slots; memory bus and responses pass through.
     total: In(id_bits)
         Number of memory units in the cage.
     scan: In(ScanLines)
@@ -98,10 +98,10 @@ class MemoryUnit(wiring.Component):
         output = Signal.like(self.scan.video)
         drawn = Signal()
         scan = wires(m, "scan_wires")
-        for address, line in ((fetch, self.scan.fetch), (show, self.scan.show)):
+        for address, asked in ((fetch, self.scan.fetch), (show, self.scan.show)):
             scan.d.comb += [
                 address.total.eq(self.total), address.id.eq(number),
-                address.x.eq(line.x), address.y.eq(line.y),
+                address.x.eq(asked.x), address.y.eq(asked.y),
             ]
         shown = show.selected & drawn
         scan.d.sync += [self.scan.drawn.eq(shown), self.scan.video.eq(Mux(shown, output, 0))]
@@ -121,8 +121,8 @@ class MemoryUnit(wiring.Component):
 
     def _serve(self, m, number, current):
         """What the processing element asks for, and its answer; ``current`` of the depth."""
-        lines, onward = self.left.lines, self.right.lines
-        write, read = lines.write, lines.read
+        bus, onward = self.left.lines, self.right.lines
+        write, read = bus.write, bus.read
         access, pictures = self.memory.access, self.pictures
         scanned = access.scan if self.configuration.memory_ports == 1 else C(0)
         write_here = Signal()
@@ -140,15 +140,15 @@ class MemoryUnit(wiring.Component):
             access.color_in.value.eq(write.color),
             access.color_in.tag.eq(
                 Mux(pictures.front, pictures.color_tag[0], pictures.color_tag[1])),
-            lines.write_busy.eq(onward.write_busy | (write_here & access.write_busy)),
-            lines.scanned.eq(onward.scanned | Mux(scanned, Mux(number[0], 2, 1), 0)),
+            bus.write_busy.eq(onward.write_busy | (write_here & access.write_busy)),
+            bus.scanned.eq(onward.scanned | Mux(scanned, Mux(number[0], 2, 1), 0)),
 
             read_here.eq(read.valid & (read.unit == number)),
             access.read.eq(read_here),
             access.read_address.eq(read.address),
-            lines.read_busy.eq(onward.read_busy | (read_here & access.read_busy)),
+            bus.read_busy.eq(onward.read_busy | (read_here & access.read_busy)),
             answer.eq(Mux(current, access.depth.value, self.configuration.depth_background)),
-            lines.read_data.eq(onward.read_data | Mux(answered, answer, 0)),
+            bus.read_data.eq(onward.read_data | Mux(answered, answer, 0)),
         ]
         m.d.sync += answered.eq(read_here & ~access.read_busy)
 

@@ -32,7 +32,7 @@ class OnePortMemory(wiring.Component):
         self.tag_bits = tag_bits
         # Parts of one width, so that it is one RAM with an enable for each part, not one RAM each.
         width = max(Shape.cast(access.members[f"{part.kind}_in"].shape).width for part in PARTS)
-        # A read never meets a write, which synthesis cannot know.
+        # Synthesis cannot know that a read never meets a write.
         self.storage = memory.Memory(shape=data.ArrayLayout(width, len(PARTS)), depth=words,
                                      init=[], attrs={"no_rw_check": 1})
         super().__init__({"access": In(access)})

@@ -27,8 +27,8 @@ class TagSweep(wiring.Component):
     elements do that (step (c) after figure 12); here units that have none are
     background as well, and no element carries the logic for it.
 
-    Whether somebody else asked is looked at a clock later: the lines of all who may
-    ask are long, and nothing waits for the answer.
+    Whether somebody else asked is looked at a clock later: these signals come from far
+    away, and nothing waits for the answer.
 
     Latency: at most six clocks a word while only the scan asks, which takes every
     other clock at most: read and check 3, erase 3.  ``initialise``: one, and two.  While
@@ -90,7 +90,7 @@ class TagSweep(wiring.Component):
         words = self.words
         left = Signal(self.parts)  # parts to erase
         everything = Signal()
-        # In the clock before, the RAM was free, was written; and tag 0 was asked for.
+        # In the clock before: the RAM was free; it was written; tag 0 was asked for.
         served = Signal()
         overwritten = Signal()
         asked = Signal()

@@ -40,7 +40,7 @@ class TwoPortMemory(wiring.Component):
         self.words = words
         self.depth_bits = depth_bits
         self.tag_bits = tag_bits
-        # Spares synthesis the logic that would make a read beside a write see the old word.
+        # `no_rw_check` spares the logic that would make a read beside a write see the old word.
         self.storages = [memory.Memory(shape=access.members[f"{part.kind}_in"].shape, depth=words,
                                        init=[], attrs={"no_rw_check": 1})
                          for part in PARTS]

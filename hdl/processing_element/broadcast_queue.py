@@ -95,7 +95,7 @@ class BroadcastQueue(wiring.Component):
         waits = Signal()
         drained = Signal()
         operation = self.operations
-        # A triangle's interpolants are there as long as its outline, and longer.
+        # It is enough to look at the interpolants: they stay as long as the outline, and longer.
         m.d.sync += drained.eq((planes.level == 0) & ~self.strobe & ~arrived)
         m.d.sync += arrived.eq(self.strobe & is_triangle)
         share = self._filter.add_to(m, triangle, self)
@@ -114,7 +114,7 @@ class BroadcastQueue(wiring.Component):
         with m.Elif(operation.valid & operation.ready):
             m.d.sync += waits.eq(0)
         m.d.comb += [
-            # Room for this word and for one that has just arrived.
+            # There must be room for a word that comes now and for one that has just arrived.
             self.ready.eq((planes.level < depth - 1) & ~waits),
             triangles.w_en.eq(arrived & share.keep),
             planes.w_en.eq(triangles.w_en),

@@ -31,7 +31,7 @@ class DepthReadBack(wiring.Component):
         0 while not valid.
     memory: Out(MemoryBus)
 
-    Not in the paper; the lines are those of figure 12.
+    Not in the paper; the memory bus is that of figure 12.
     """
 
     latency = 2
@@ -58,7 +58,7 @@ class DepthReadBack(wiring.Component):
         address = Signal(self.address_bits)
         # This address is the last one; the next one is the first.
         last, again = Signal(name="last"), Signal(name="again")
-        answering = Signal()  # the answer is on the lines in this clock only
+        answering = Signal()  # the answer is on the memory bus in this clock only
         free = ~answering & (~depths.valid | depths.ready)
         m.d.comb += [
             memory.read.unit.eq(unit),

@@ -1,4 +1,4 @@
-"""Gives the memory lines of a processing element to one of its parts at a time."""
+"""Gives the memory bus of a processing element to one of its parts at a time."""
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
@@ -10,20 +10,22 @@ __all__ = ["MemoryBusSelector"]
 
 
 class MemoryBusSelector(wiring.Component):
-    """The depth test has the lines, but while a service needs them.  Combinational.
+    """The depth test has the memory bus, except while a service needs it.  Combinational.
 
-    Answers go to all three; only the one that has the lines asked.
+    Answers go to all three; only the one that has the bus has asked.
 
     Parameters: those of ``MemoryBus``.
 
     Members
     -------
     surveying, reading: In(1)
-        The lines are that service's; at most one of the two, and the depth test is idle.
+        The bus is that service's; at most one of the two, and the depth test is idle.
     survey, read_back, depth_test: In(MemoryBus)
-        The survey writes depths alone, and at address 0, to which the idle depth test keeps
-        that line: the colour is whatever is on the others.  The read-back does not write.
+        The survey drives neither address nor colour of its writes: both stay those of the depth
+        test, which keeps the address 0 while it is idle (``DepthTestSignature``).  The read-back
+        does not write.
     lines: Out(MemoryBus)
+        The bus that one of them has; the name is that of the ``Connector`` it goes to.
 
     Inside the processing element of figure 12.
     """
@@ -32,31 +34,31 @@ class MemoryBusSelector(wiring.Component):
         self.id_bits = id_bits
         self.address_bits = address_bits
         self.depth_bits = depth_bits
-        lines = MemoryBus(id_bits=id_bits, address_bits=address_bits, depth_bits=depth_bits)
+        bus = MemoryBus(id_bits=id_bits, address_bits=address_bits, depth_bits=depth_bits)
         super().__init__({
             "surveying": In(1),
             "reading": In(1),
-            "survey": In(lines),
-            "read_back": In(lines),
-            "depth_test": In(lines),
-            "lines": Out(lines),
+            "survey": In(bus),
+            "read_back": In(bus),
+            "depth_test": In(bus),
+            "lines": Out(bus),
         })
 
     def elaborate(self, platform):
         m = Module()
-        lines = self.lines
+        bus = self.lines
         for source in (self.survey, self.read_back, self.depth_test):
             m.d.comb += [
-                source.read_busy.eq(lines.read_busy),
-                source.read_data.eq(lines.read_data),
-                source.write_busy.eq(lines.write_busy),
-                source.scanned.eq(lines.scanned),
+                source.read_busy.eq(bus.read_busy),
+                source.read_data.eq(bus.read_data),
+                source.write_busy.eq(bus.write_busy),
+                source.scanned.eq(bus.scanned),
             ]
-        m.d.comb += [lines.read.eq(self.depth_test.read), lines.write.eq(self.depth_test.write)]
+        m.d.comb += [bus.read.eq(self.depth_test.read), bus.write.eq(self.depth_test.write)]
         with m.If(self.surveying):
-            m.d.comb += [lines.read.eq(self.survey.read)]
-            m.d.comb += [lines.write[name].eq(self.survey.write[name])
+            m.d.comb += [bus.read.eq(self.survey.read)]
+            m.d.comb += [bus.write[name].eq(self.survey.write[name])
                          for name in ("valid", "unit", "depth")]
         with m.Elif(self.reading):
-            m.d.comb += lines.read.eq(self.read_back.read)
+            m.d.comb += bus.read.eq(self.read_back.read)
         return m

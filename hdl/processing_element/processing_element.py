@@ -28,7 +28,7 @@ __all__ = ["ProcessingElement"]
 
 COUNTER_BITS = 32
 
-#: Spans found ahead, so that rows of few pixels hide behind longer ones.
+#: So many spans are found ahead: rows of few pixels hide behind longer ones.
 SPANS_WAITING = 16
 SPANS_LATENCY = 1
 
@@ -45,7 +45,7 @@ class ProcessingElement(wiring.Component):
                                 ▼                                                        ▼
                           response link ◀── from the right       memory bus to the right
 
-    It drives the lines to its right and ignores those from its left; the ID and
+    It drives the memory bus to its right and ignores the one from its left; the ID and
     the responses pass through.
 
     Latency: from a triangle's strobe to the read of its first fragment ``latency``
@@ -160,7 +160,7 @@ class ProcessingElement(wiring.Component):
         wiring.connect(pipeline, interpolator.fragments, depth_test.fragments)
 
     def _connect_domain(self, m):
-        """First unit from the lines, upper end from the survey."""
+        """First unit from the ID lines, upper end from the survey."""
         rasteriser, interpolator, picture = self._rasteriser, self._interpolator, self._picture
         survey, read_back, control = self._survey, self._read_back, self._control
         first, end = self.left.id, survey.end

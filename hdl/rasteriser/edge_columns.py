@@ -15,7 +15,7 @@ __all__ = ["EdgeColumns", "extent_layout"]
 def extent_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """Columns ``first`` up to, without, ``beyond`` of row ``y``, held to the screen; maybe none.
 
-    The other fields as in ``row_walker.row_layout``.
+    The other fields are as in ``row_layout``.
     """
     row = row_layout(configuration)
     return data.StructLayout({

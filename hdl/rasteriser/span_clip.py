@@ -1,4 +1,4 @@
-"""What of a row belongs to one processing element."""
+"""The part of a row that belongs to one processing element."""
 
 from amaranth.hdl import *
 from amaranth.lib import stream, wiring

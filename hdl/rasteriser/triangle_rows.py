@@ -58,7 +58,7 @@ class TriangleRows(wiring.Component):
     triangles: In(stream of walked_outline_layout)
     rows: Out(stream of row_layout)
     lattice: Out(lattice_layout)
-        Of the domain's first block, from the clock after ``end`` has settled.
+        The lattice of the domain's first block, from the clock after ``end`` has settled.
     whole: Out(1)
         The domain is one block.
     busy: Out(1)

@@ -37,11 +37,11 @@ class EdgeSetup(wiring.Component):
     begin: In(1)
         Prepare the edge that is at the inputs.
     x: In(signed(position_bits))
-        Of the edge's upper end, from the centre of the machine's first column.
+        The edge's upper end, from the centre of the machine's first column.
     run: In(signed(coordinate_bits + 1))
-        From upper to lower end.
+        Columns from the upper to the lower end.
     height: In(edge_remainder_bits)
-        Likewise; positive.
+        Rows from the upper to the lower end; positive.
     distance: In(edge_remainder_bits)
         From the upper end down to the first sample line.
     start_done, step_done: Out(1)

@@ -14,19 +14,19 @@ from .pixel_box import PixelBox, box_layout
 from .sampling_grid import grid_layout
 from .vertex_sort import VertexSort, interpolants
 
-__all__ = ["TriangleOutline", "outline_layout"]
+__all__ = ["TriangleOutline", "sorted_triangle_layout"]
 
 
-def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """A triangle that may cover a pixel centre; lengths in sub-pixel units.
+def sorted_triangle_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """A triangle that may cover a pixel centre, its vertices sorted; lengths in sub-pixel units.
 
     ``box``                    the pixels it may touch
-    ``clockwise``              so it runs from upper over middle to lower, as seen
+    ``clockwise``              the way from upper over middle to lower is clockwise, as seen
     ``double_area``            positive
-    ``x``, ``y``               of the upper vertex
+    ``x``, ``y``               position of the upper vertex
     ``middle_x``, ``middle_y`` from there to the middle vertex
-    ``lower_x``, ``lower_y``   and to the lower one
-    ``values``                 of each interpolant: ``upper``, the value there, and the rises from
+    ``lower_x``, ``lower_y``   from there to the lower vertex
+    ``values``                 for each interpolant ``upper``, the value there, and the rises from
                                there to the two others, ``first`` and ``second`` clockwise
     ``color``                  where nothing but depth is interpolated
     """
@@ -60,7 +60,7 @@ class TriangleOutline(wiring.Component):
     -------
     grid: In(grid_layout)
     triangles: In(stream of triangle_layout)
-    outlines: Out(stream of outline_layout)
+    outlines: Out(stream of sorted_triangle_layout)
         The triangles that are left, in order.
     busy: Out(1)
         Holds a triangle.
@@ -83,7 +83,7 @@ class TriangleOutline(wiring.Component):
             "grid": In(grid_layout(configuration)),
             "triangles": In(stream.Signature(
                 struct_layout(commands.triangle_layout(configuration)))),
-            "outlines": Out(stream.Signature(outline_layout(configuration))),
+            "outlines": Out(stream.Signature(sorted_triangle_layout(configuration))),
             "busy": Out(1),
         })
 
@@ -99,7 +99,7 @@ class TriangleOutline(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        layout = outline_layout(self.configuration)
+        layout = sorted_triangle_layout(self.configuration)
         m.submodules.sort = sort = self._sort
         m.submodules.pixels = pixels = self._pixels
         m.submodules.area = area = self._area

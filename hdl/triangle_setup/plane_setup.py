@@ -21,7 +21,8 @@ class Slot:
 
 
 def slope_bits(configuration: MachineConfiguration, value_bits: int) -> int:
-    """Of a signed slope: at most the rectangle's around the triangle in x (or y) and value."""
+    """Bits of a signed slope: it is at most the area of the rectangle around the triangle in x
+    (or y) and value."""
     return value_bits + configuration.coordinate_bits + 1
 
 
@@ -62,9 +63,9 @@ class PlaneSetup(wiring.Component):
     ----------
     configuration: MachineConfiguration
     value_bits: int
-        Of a vertex value.
+        Bits of a vertex value.
     word_bits: int
-        Of the carried words.
+        Bits of the carried words.
 
     Members
     -------
@@ -176,7 +177,8 @@ class PlaneSetup(wiring.Component):
             with m.Case(Slot.STEP_Y):
                 m.d.sync += dividend.eq(wide << grid.y_shift)
             with m.Default():
-                # 2 · floor(area / 2) + 1: the bias of half a step, see golden.setup.
+                # 2 · floor(area / 2) + 1: the bias of half a step, as in
+                # golden.reference.triangle_setup.
                 m.d.sync += dividend.eq(total.shift_left(1) + Cat(C(1, 1), area[1:]))
 
         m.d.comb += [

@@ -13,7 +13,7 @@ from ...golden.specification.ranges import CHANNEL_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.words import prepared_triangle_layout, struct_layout
 from .edge_setup import EdgeSetup, position_bits
-from .outline import TriangleOutline, outline_layout
+from .outline import TriangleOutline, sorted_triangle_layout
 from .plane_setup import PlaneSetup, Slot
 from .result_queue import ResultQueue
 from .sampling_grid import SamplingGrid
@@ -107,7 +107,7 @@ class TriangleSetup(wiring.Component):
         wiring.connect(m, wiring.flipped(self.vertices), outlines.triangles)
 
         # The outline that is in its slots, and how many are in or behind them.
-        outline = Signal(outline_layout(self.configuration), reset_less=True)
+        outline = Signal(sorted_triangle_layout(self.configuration), reset_less=True)
         active = Signal()
         slot = Signal(range(Slot.COUNT))
         clock = Signal(range(self.slot_clocks))
@@ -218,8 +218,8 @@ class TriangleSetup(wiring.Component):
     def _collect(self, m, outline, enter, pop):
         """Queues of all results; when each has its part they are popped into the output register.
 
-        Known in one clock, popped in the next, since the queues lie far apart: so at most every
-        other clock, still sooner than triangles come.
+        That each has its part is registered, since the queues lie far apart, and they are popped
+        in the next clock: at most every other clock, which is sooner than triangles come.
         """
         triangle = Signal(self.triangles.payload.shape())
         head = data.StructLayout({"box": outline.box.shape(), "clockwise": 1,

@@ -40,9 +40,9 @@ class VertexSort(wiring.Component):
     Members
     -------
     triangle: In(triangle_layout)
-        Vertices as in the display list.
+        Its vertices are in the order of the display list.
     vertices: Out(sorted_vertices_layout)
-        From top to bottom.
+        They are sorted from top to bottom.
     """
 
     latency = 2
@@ -65,7 +65,7 @@ class VertexSort(wiring.Component):
             corners.append(corner)
 
         def after(axis):
-            """Of each pair, whether the first comes after the second: 0 and 1, 0 and 2, 1 and 2."""
+            """Three bits: 0 comes after 1, 0 after 2, 1 after 2."""
             flags = Signal(3, name=f"{axis}_after", reset_less=True)
             m.d.sync += flags.eq(Cat(given[i][axis].as_signed() > given[j][axis].as_signed()
                                      for i, j in ((0, 1), (0, 2), (1, 2))))

@@ -88,7 +88,7 @@ class VideoScanGenerator(wiring.Component):
                 with m.If(line == timing.vertical_total - 1):
                     m.d.sync += line.eq(0)
 
-        # Order on both axes: sync, back porch, active, front porch.
+        # Both axes begin with the sync; back porch, picture and front porch follow.
         left = timing.horizontal_sync + timing.horizontal_back
         top = timing.vertical_sync + timing.vertical_back
         pixel = Signal()

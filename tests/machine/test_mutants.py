@@ -214,7 +214,7 @@ def check_skewed():
     draw(random_list(11, 20), cards="4x(PM)", skew=True, seed=2)
 
 
-#: And of the two lanes that share the lines to one-port units.
+#: The same, of the two lanes that share the memory bus to one-port units.
 MUTANTS_OF_LANES = {
     "fragments of a pixel in either lane": (
         "depth_test.one_port", "OnePortDepthTest", ["processing_element.processing_element"],

@@ -1,4 +1,4 @@
-"""One or two lanes on the lines of one-port units: each pixel as if one fragment came after the
+"""One or two lanes on the bus of one-port units: each pixel as if one fragment came after the
 other."""
 
 import random
@@ -72,7 +72,7 @@ def test_random_fragments_on_few_pixels(seed, units, scan, cards):
 @pytest.mark.parametrize("scan", [0.0, 0.2, 0.5])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_pixel_of_each_lane_nearer_and_nearer(seed, scan):
-    """Every fragment is a winner that waits for its port, and often for the lines."""
+    """Every fragment is a winner that waits for its port, and often for the bus."""
     pick = random.Random(f"nearer {seed}")
     depths, fragments = [255, 255], []
     while min(depths) > 3:

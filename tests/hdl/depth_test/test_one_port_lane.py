@@ -50,7 +50,7 @@ def test_random_fragments(seed, units, scan, refused):
 @pytest.mark.parametrize("seed", range(3))
 def test_one_pixel_in_consecutive_clocks(seed, scan, refused):
     """No update is lost, and the comparison with a winner still on its way takes place; also where
-    a winner waits for the lines while its unit is read."""
+    a winner waits for the bus while its unit is read."""
     fragments = on_one_pixel_in_consecutive_clocks(seed, 20)
     assert draw(fragments, units=1, seed=seed, scan=scan, background=255,
                 refused=refused).forwarded > 0

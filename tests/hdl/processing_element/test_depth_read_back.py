@@ -2,7 +2,7 @@
 
 import pytest
 from hdl_bench.bench import Drive, Service, simulate
-from hdl_bench.memory import MemoryLines
+from hdl_bench.memory import MemoryBusModel
 from hdl_bench.streams import Sink, no_pause, pauses
 
 from cardcage.hdl.processing_element.depth_read_back import DepthReadBack
@@ -12,7 +12,7 @@ WORDS = 16
 
 def read_back(first, end, words, *, scan=0.0, seed=0, rounds=1, pause=no_pause, gap=no_pause):
     dut = DepthReadBack(id_bits=3, address_bits=4, depth_bits=8)
-    memory = MemoryLines(dut.memory, first=first, end=end, words=WORDS, depth_bits=8,
+    memory = MemoryBusModel(dut.memory, first=first, end=end, words=WORDS, depth_bits=8,
                          seed=seed, scan=scan)
 
     def inputs(ctx, clock):

@@ -1,4 +1,4 @@
-"""The memory lines, given to one part at a time."""
+"""The memory bus, given to one part at a time."""
 
 import random
 
@@ -11,9 +11,9 @@ ANSWERS = ("read_busy", "read_data", "write_busy", "scanned")
 SOURCES = ("depth_test", "survey", "read_back")
 
 
-def test_the_one_whose_turn_it_is_has_the_lines():
+def test_the_one_whose_turn_it_is_has_the_bus():
     dut = MemoryBusSelector(id_bits=2, address_bits=6, depth_bits=8)
-    pick = random.Random("lines")
+    pick = random.Random("bus")
 
     def scramble(ctx, target):
         word = pick.getrandbits(len(Value.cast(target)))
@@ -41,7 +41,7 @@ def test_the_one_whose_turn_it_is_has_the_lines():
                 else:  # the read-back does not write, and the depth test does not meanwhile
                     assert write.as_bits() == idle.as_bits()
                 for source in SOURCES:
-                    lines = getattr(dut, source)
-                    assert {name: ctx.get(getattr(lines, name)) for name in ANSWERS} == answers
+                    bus = getattr(dut, source)
+                    assert {name: ctx.get(getattr(bus, name)) for name in ANSWERS} == answers
 
     evaluate(dut, steps)

@@ -5,7 +5,7 @@ import random
 import pytest
 from amaranth.hdl import Value
 from hdl_bench.bench import Agent, Drive, Watch, simulate
-from hdl_bench.memory import MemoryLines
+from hdl_bench.memory import MemoryBusModel
 from hdl_bench.pictures import (
     exact_words,
     prepare,
@@ -88,7 +88,7 @@ class Bench:
     def __init__(self, configuration, first, end, packets, *, responses=0, seed=0, scan=0.0,
                  pause=lambda: 0, right=()):
         self.dut = dut = ProcessingElement(configuration=configuration)
-        self.memory = MemoryLines(dut.right.lines, first=first, end=end,
+        self.memory = MemoryBusModel(dut.right.lines, first=first, end=end,
                                   words=configuration.words, seed=seed, scan=scan,
                                   depth_bits=configuration.depth_bits)
         self.announcer = Announcer(dut, self.memory, packets, pause)

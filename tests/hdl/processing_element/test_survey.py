@@ -4,7 +4,7 @@ import random
 
 import pytest
 from hdl_bench.bench import Drive, Service, simulate
-from hdl_bench.memory import MemoryLines
+from hdl_bench.memory import MemoryBusModel
 from hdl_bench.streams import no_pause, pauses
 
 from cardcage.hdl.processing_element.survey import Survey
@@ -12,7 +12,7 @@ from cardcage.hdl.processing_element.survey import Survey
 
 def survey(first, end, total, *, depth_bits=8, scan=0.0, seed=0, rounds=1, pause=no_pause):
     dut = Survey(id_bits=5, address_bits=4, depth_bits=depth_bits)
-    memory = MemoryLines(dut.memory, first=first, end=end, words=1, depth_bits=depth_bits,
+    memory = MemoryBusModel(dut.memory, first=first, end=end, words=1, depth_bits=depth_bits,
                          seed=seed, scan=scan)
 
     def found(ctx):
@@ -64,7 +64,7 @@ def test_a_unit_with_a_stuck_bit_is_not_found(stuck, level):
     """Not one that a single pattern would have let pass."""
     dut = Survey(id_bits=5, address_bits=4, depth_bits=8)
 
-    class Stuck(MemoryLines):
+    class Stuck(MemoryBusModel):
         def drive(self, ctx):
             self._answer = self._answer | stuck if level else self._answer & ~stuck
             super().drive(ctx)

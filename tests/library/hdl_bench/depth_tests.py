@@ -3,7 +3,7 @@
 import random
 
 from .bench import Watch, simulate
-from .memory import MemoryLines
+from .memory import MemoryBusModel
 from .streams import Source, no_pause
 
 
@@ -56,13 +56,13 @@ class DepthTestRun:
     memory afterwards.
 
     ``background`` is in memory before, or random depths; ``settings`` are those of
-    ``MemoryLines``.  Attributes: ``source``, ``memory``, the numbers of the ``winners``, ``busy``
-    by clock, how often a depth was ``forwarded``.
+    ``MemoryBusModel``.  Attributes: ``source``, ``memory``, the numbers of the ``winners``,
+    ``busy`` by clock, how often a depth was ``forwarded``.
     """
 
     def __init__(self, dut, fragments, *, units, words, pause=no_pause, background=None, after=40,
                  **settings):
-        self.memory = memory = MemoryLines(dut.memory, first=0, end=units, words=words,
+        self.memory = memory = MemoryBusModel(dut.memory, first=0, end=units, words=words,
                                            depth_bits=dut.depth_bits, **settings)
         if background is not None:
             memory.depth = dict.fromkeys(memory.depth, background)
@@ -97,7 +97,7 @@ def keeps_the_first_of_ties(draw):
 
 def sees_a_clear_in_between(dut, unit, gap, *, words):
     """Once it is not busy, what it wrote is forgotten: the memory may be cleared."""
-    memory = MemoryLines(dut.memory, first=0, end=2, words=words, depth_bits=dut.depth_bits)
+    memory = MemoryBusModel(dut.memory, first=0, end=2, words=words, depth_bits=dut.depth_bits)
     memory.depth = dict.fromkeys(memory.depth, 255)
     source = Source(dut.fragments, [fragment(unit, 4, 10, 1), fragment(unit, 4, 200, 2)],
                     lambda: gap)
