@@ -7,7 +7,7 @@ or left edge.  Everything is in integers, so it is exact.  The steps are
 
 and none of them loops over triangles, rows or pixels; large lists go through in
 chunks, so the working set stays bounded.  This is written independently of
-``setup``, which steps edges as the hardware does.
+``triangle_setup``, which multiplies edges' steps by rows as the hardware does.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ class MemoryBus(wiring.Signature):
         The unit's one port is taken by the scan.
     scanned: In(2)
         Known before any request: the scan takes the one port of a unit with an even number (bit
-        0), with an odd number (bit 1).
+        0), of one with an odd number (bit 1).
 
     Raises ``ValueError`` where a number of bits is not positive.
     """
@@ -109,13 +109,15 @@ class MemoryBus(wiring.Signature):
 class Connector(wiring.Signature):
     """The lines that run from one slot to the next; ``Out`` is towards the right.
 
+    The memory bus is called ``lines`` here, and so are its ports in the exported Verilog, which
+    keep their names.
+
     Members
     -------
     id: Out(id_bits)
         Memory units to the left (figures 10 and 11).
     lines: Out(MemoryBus)
-        The memory bus, driven by the nearest processing element to the left.  The member keeps
-        this name, and with it the ports of the exported Verilog.
+        The memory bus, driven by the nearest processing element to the left.
     response: In(stream of response words)
         What the processing elements further right have to say to the controller.
     """

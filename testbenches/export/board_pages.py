@@ -14,16 +14,14 @@ import textwrap
 from itertools import groupby
 from pathlib import Path
 
+from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
 from ...golden.planning.machines import preset
 from ...hdl.components import COMPONENTS
+from ...hdl.machine import BOARDS
 from ..support.atomic_output import atomic_file
 from .port_meanings import ports_in_parts, stated_timing
-
-#: Of ``COMPONENTS``.
-BOARDS = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator")
 
 #: Whose numbers of bits the pages show.
 PRESET = "small"
@@ -56,6 +54,7 @@ def board_page(name: str) -> str:
         *_port_rows(component),
         "",
     ]
+    Fragment.get(component, None)  # it is only looked at; Amaranth wants each elaborated once
     if timing["latency_clocks"] is not None:
         lines += [f"Latency in this preset: {timing['latency_clocks']} clocks.", ""]
     return "\n".join(lines)
