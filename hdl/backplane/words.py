@@ -39,6 +39,7 @@ def struct_layout(layout: commands.Layout) -> data.StructLayout:
 
 
 def prepared_triangle_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """All that a processing element is told of a triangle."""
     return struct_layout(commands.prepared_triangle_layout(configuration))
 
 
@@ -81,6 +82,7 @@ def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
 
 
 def response_layout() -> data.StructLayout:
+    """One response word: its kind, a ``ResponseKind``, and its value."""
     return data.StructLayout({
         "kind": unsigned(commands.RESPONSE_KIND_BITS),
         "value": unsigned(commands.RESPONSE_VALUE_BITS),

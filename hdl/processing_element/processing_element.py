@@ -50,9 +50,9 @@ class ProcessingElement(wiring.Component):
 
     Latency: from a triangle's strobe to the read of its first fragment ``latency``
     clocks.  Throughput: a fragment a clock while ports are free: rows are found
-    ahead, at one a clock, triangle after triangle.  Units of two ports take a
-    fragment a clock.  Of one port, a visible fragment takes two accesses, so two
-    clocks on one unit; on two it takes one where fragments alternate between them,
+    ahead, at one a clock, triangle after triangle.  Units with two ports take a
+    fragment a clock.  In units with one port a visible fragment takes two accesses, so
+    two clocks on one unit; on two it takes one where fragments alternate between them,
     within the few that wait; these also bridge rows without pixels (``OnePortDepthTest``).
 
     Members

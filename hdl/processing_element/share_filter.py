@@ -27,8 +27,8 @@ class ShareFilter:
     """Keeps the triangles that may have pixels of this processing element, and drops the others.
 
     A triangle whose bounding box holds no pixel of the domain's lattice is dropped.
-    Where the domain is no single lattice all are kept.  Of a lattice with shifted rows,
-    a triangle is kept whose box holds an owned column of whichever row.
+    Where the domain is no single lattice all are kept.  Where the rows of the lattice are
+    shifted, a triangle is kept if some row owns a column of its box.
 
     This is no component, but adds its signals to the module of the ``BroadcastQueue`` that
     uses it: that costs no hierarchy and no cell, so a machine without further filters

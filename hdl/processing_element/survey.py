@@ -32,8 +32,8 @@ class Survey(wiring.Component):
     end: Out(id_bits)
         First unit beyond the domain; ``first`` when there is none.
     memory: Out(MemoryBus)
-        Of a write it drives the unit and the depth only: whoever hands the bus on keeps the
-        address of writes at 0, where it reads (``MemoryBusSelector``).
+        It drives unit and depth of a write, but not the address: whoever hands the bus on keeps
+        that at 0, where it reads (``MemoryBusSelector``).
 
     Fuchs & Johnson, step (b) after figure 12.
     """

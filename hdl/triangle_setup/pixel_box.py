@@ -29,7 +29,7 @@ class PixelBox(wiring.Component):
     grid: StructLayout
         As ``grid_layout`` gives it.
     coordinate_bits, sub_bits: int, positive
-        Of a vertex coordinate, and how many of them are sub-pixel bits.
+        Bits of a vertex coordinate, and how many of them are sub-pixel bits.
 
     Members
     -------
