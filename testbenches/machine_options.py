@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
 from ..golden.organisations.organisation_of import organisation_of
-from ..golden.planning.machine_plan import Plan, plan
-from ..golden.planning.machines import PRESETS, check_max_error, full_machine
+from ..golden.planning.machine_plan import plan
+from ..golden.planning.presets import PRESETS
 from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
 from ..golden.specification.configuration import MAXIMUM_SETUP_INTERVAL, MachineConfiguration
-from ..golden.specification.display_list import DisplayList
 from ..golden.specification.errors import InputError
+from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
 
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
@@ -34,8 +34,8 @@ SETUPS: dict[SetupChoice, dict[str, Any]] = {
 class MachineOptions:
     """What can be asked of a machine; None leaves a choice to the preset or the scene.
 
-    ``preset``            a named machine of ``golden.specification.configuration.PRESETS``; the
-                          rest overrides it
+    ``preset``            a named machine of ``golden.planning.presets.PRESETS``; the rest overrides
+                          it
     ``cards``             card order, such as ``4x(PMM)``
     ``size``              width, height of the highest resolution
     ``fraction_bits``     of the interpolants; ``"exact"`` takes what the scene needs
@@ -64,7 +64,8 @@ class MachineOptions:
     setup: SetupChoice | None = None
 
     def machine(self) -> dict[str, Any]:
-        """Fields of ``MachineConfiguration``, and of ``size``, that are settled."""
+        """Fields of ``MachineConfiguration`` that are settled; fraction bits None are exact ones.
+        Raises ``InputError``."""
         if self.preset is not None and self.preset not in PRESETS:
             raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
         settled = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
@@ -77,7 +78,8 @@ class MachineOptions:
             if self.fraction_bits is not None:
                 raise InputError("--max-error: chooses the fraction bits itself; leave out "
                                  "--fraction-bits")
-            settled["fraction_bits"] = "exact"  # so the preset's are not meant
+        if self.max_error is not None or self.fraction_bits == "exact":
+            settled["fraction_bits"] = None  # so the preset's are not meant
         if self.setup is not None:
             settled |= SETUPS[self.setup]
         if self.shading != "auto":
@@ -85,6 +87,13 @@ class MachineOptions:
         if self.size is not None:
             settled["width"], settled["height"] = self.size
         return settled
+
+    def for_plan(self) -> dict[str, Any]:
+        """What is asked of ``plan`` besides a display list, which has its own size.
+        Raises ``InputError``."""
+        settled = {name: value for name, value in self.machine().items()
+                   if name not in ("width", "height")}
+        return settled | {"max_error": self.max_error or 0}
 
 
 def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:
@@ -97,31 +106,22 @@ def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:
                              shading="flat" if options.shading == "flat" else "gouraud")
 
 
-def plan_machine(display_list: DisplayList, options: MachineOptions) -> Plan:
-    """The least machine for a list, but for what was asked for.  Raises ``InputError``."""
-    settled = options.machine()
-    for name in ("width", "height"):
-        settled.pop(name, None)
-    bits = settled.pop("fraction_bits", "exact")
-    return plan(display_list, max_error=options.max_error or 0,
-                fraction_bits=None if bits == "exact" else bits, **settled)
-
-
 def machine_for_scene(scene: str | Path, options: MachineOptions
                       ) -> tuple[SceneDisplayList, MachineConfiguration]:
     """Load a scene and plan its machine.  Raises ``InputError`` for whatever cannot be used."""
-    listed = load_scene(scene, options)
-    return listed, plan_machine(listed.display_list, options).configuration
+    loaded = load_scene(scene, options)
+    return loaded, plan(loaded.display_list, **options.for_plan()).configuration
 
 
 def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     """The machine for any scene of that size: exact for every triangle on the screen, or as exact
     as asked for, unless the options or the preset give the fraction bits.  Raises ``InputError``.
     """
-    settled = DEFAULT_SIZE | options.machine()
-    if settled.get("fraction_bits", "exact") != "exact":
-        return MachineConfiguration(**settled)
-    return full_machine(max_error=options.max_error or 0, **settled)
+    machine = MachineConfiguration(**DEFAULT_SIZE | options.machine())
+    if not options.max_error:
+        return machine
+    return replace(machine, fraction_bits=on_screen_fraction_bits(
+        machine.width, machine.height, machine.sub_bits, options.max_error))
 
 
 def option_words(options: MachineOptions) -> list[str]:

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..reference import bit_true
 from ..specification.commands import layout_bits, prepared_triangle_layout
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.errors import InputError
-from .machines import check_max_error, error_fraction_bits, full_machine
+from ..specification.fixed_point import (
+    check_max_error,
+    error_bound,
+    error_fraction_bits,
+    on_screen_fraction_bits,
+)
 from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
 
 #: What a processing element holds in waiting where there is enough to hold.
@@ -52,7 +56,9 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
 
     ``max_error``      LSB by which a depth may be off; 0 is exact
     ``fraction_bits``  None: the fewest for ``max_error``
-    ``rest``           further fields of ``MachineConfiguration``, which are then not planned
+    ``rest``           further fields of ``MachineConfiguration``, which are then not planned;
+                       ``width``, ``height`` and ``depth_bits`` must be those of the list, and
+                       ``sub_bits``, always the fewest, is none of them
 
     Coverage is exact in any case, and the exact picture is the same as on the machine
     for the whole screen.  The stored depth keeps the list's ``depth_bits``, since the
@@ -63,14 +69,18 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     check_max_error(max_error)
     if fraction_bits is not None and max_error:
         raise InputError("max error: the fraction bits are given as well; leave one of them out")
-    listed = with_sub_bits(display_list, fewest_sub_bits(display_list))
-    size: dict[str, Any] = {"cards": cards, "width": listed.width, "height": listed.height,
-            "depth_bits": listed.depth_bits}
-    rest = {"shading": "flat" if listed.flat else "gouraud"} | rest
-    machine = MachineConfiguration(**size | {"fraction_bits": fraction_bits or 0,
-                                             "sub_bits": listed.sub_bits} | rest)
+    picture = {name: getattr(display_list, name) for name in ("width", "height", "depth_bits")}
+    for name, given in picture.items():
+        if rest.pop(name, given) != given:
+            raise InputError(f"{name}: the display list has {given}; a plan is for the list's own")
+    own_sub_bits = display_list.sub_bits
+    display_list = with_sub_bits(display_list, fewest_sub_bits(display_list))
+    fixed = {"cards": cards, **picture}
+    rest = {"shading": "flat" if display_list.flat else "gouraud"} | rest
+    machine = MachineConfiguration(**fixed, sub_bits=display_list.sub_bits,
+                                   fraction_bits=fraction_bits or 0, **rest)
     interlace = machine.interlace
-    needs = scene_needs(listed, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    needs = scene_needs(display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
     if fraction_bits is None:
         fraction_bits = needs.exact_fraction_bits
         if max_error:
@@ -86,10 +96,12 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         # Behind one that is drawn all of them can wait.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
     } | {name: value for name, value in rest.items() if name != "shading"})
-    full = full_machine(max_error=max_error, **size | {
-        "sub_bits": display_list.sub_bits, "words": planned.words,
-        "clocks_per_pixel": planned.clocks_per_pixel, "timing": planned.timing,
-        "maximum_units": planned.maximum_units, "allow_orphans": planned.allow_orphans})
+    full = MachineConfiguration(
+        **fixed, sub_bits=own_sub_bits, words=planned.words,
+        clocks_per_pixel=planned.clocks_per_pixel, timing=planned.timing,
+        maximum_units=planned.maximum_units, allow_orphans=planned.allow_orphans,
+        fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
+                                              max_error))
     return Plan(planned, full, needs, tuple(_lines(planned, full, needs, max_error)))
 
 
@@ -152,7 +164,7 @@ def _precision(planned: MachineConfiguration, needs: SceneNeeds, max_error: int)
     if bits == needs.exact_fraction_bits:
         return (f"exact: a triangle of doubled area {needs.exact_double_area:,} sub-pixels reaches "
                 f"{needs.exact_extent} pixels, right and down")
-    error = float(bit_true.error_bound(bits, needs.extent))
+    error = float(error_bound(bits, needs.extent))
     source = f"at most {max_error:,} LSB asked for" if max_error else "asked for"
     return (f"{source}: a triangle reaches {needs.extent} pixels, right and down, and then errs by "
             f"up to {error:.3g}; exact from {needs.exact_fraction_bits}")

@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..reference.bit_true import error_bound
 from ..reference.triangle_setup import Edges, Outlines, outline
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.edge_widths import fewest_edge_fraction_bits
 from ..specification.errors import InputError
-from ..specification.fixed_point import exact_fraction_bits
+from ..specification.fixed_point import error_bound, exact_fraction_bits
 from ..specification.sampling_grid import Grid
 
 Int64 = NDArray[np.int64]

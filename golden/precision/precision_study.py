@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..planning.machines import error_fraction_bits
 from ..planning.scene_needs import scene_needs
 from ..reference import bit_true, exact
+from ..specification import fixed_point
 from ..specification.display_list import DisplayList
 from ..specification.picture import Picture
 from ..specification.shading import Shading, shading_for
@@ -75,8 +75,8 @@ def picture_error(got: Picture, winner: NDArray[np.int32], depth: NDArray[Any],
 class FractionBitsPoint:
     """The machine at one number of fraction bits.
 
-    ``bound``       LSB by which a stored depth or channel may be off: ``bit_true.error_bound`` at
-                    the scene's greatest extent, rounded up; 0 where the scene is exact
+    ``bound``       LSB by which a stored depth or channel may be off: ``fixed_point.error_bound``
+                    at the scene's greatest extent, rounded up; 0 where the scene is exact
     ``error``       against the exact picture
     ``end_to_end``  against the unquantised one
     """
@@ -141,7 +141,7 @@ class PrecisionStudy:
     def sweep(self) -> list[int]:
         """Fraction bits worth a look: every other one from 0, the fewest that hold depths to one
         LSB, and the fewest that are exact, which is the last."""
-        within_one = min(error_fraction_bits(self.extent, 1), self.exact_fraction_bits)
+        within_one = min(fixed_point.error_fraction_bits(self.extent, 1), self.exact_fraction_bits)
         return sorted({*range(0, self.exact_fraction_bits, 2), within_one,
                        self.exact_fraction_bits})
 
@@ -149,7 +149,7 @@ class PrecisionStudy:
         """See ``FractionBitsPoint``."""
         if fraction_bits >= self.exact_fraction_bits:
             return 0
-        return ceil(bit_true.error_bound(fraction_bits, self.extent))
+        return ceil(fixed_point.error_bound(fraction_bits, self.extent))
 
     def at_fraction_bits(self, fraction_bits: int) -> FractionBitsPoint:
         picture = bit_true.draw(self.display_list, fraction_bits=fraction_bits,

@@ -220,5 +220,5 @@ def find_worst(
     return WorstCase(
         display_list, interpolant, fraction_bits, seed, x, y,
         carried_error(display_list, interpolant, fraction_bits, x, y),
-        bit_true.error_bound(fraction_bits, x + y),
+        fixed_point.error_bound(fraction_bits, x + y),
     )  # fmt: skip

@@ -5,12 +5,11 @@ computes and a machine carries: start and increments rounded at 2**-F, summed
 modulo a power of two, floored, read as signed, saturated; where errors are
 small (``fixed_point.stays_in_range``) the last two change nothing.  With enough
 fraction bits (``setup.scene_fraction_bits``) the picture equals ``exact``'s;
-with fewer, depth and colour err by at most ``error_bound`` before the floor.
+with fewer, depth and colour err by at most ``fixed_point.error_bound`` before the floor.
 """
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -31,14 +30,6 @@ Int64 = NDArray[np.int64]
 #: that two products with a pixel count (below 2**13) and a start fit 63 bits.
 _LOW_BITS = 48
 _LOW_MASK = (1 << _LOW_BITS) - 1
-
-
-def error_bound(fraction_bits: int, extent: int) -> Fraction:
-    """The most a carried value is off, before the floor, ``extent`` = x + y pixels on.
-
-    Start and each increment are off by at most half a unit of 2**-F.
-    """
-    return Fraction(1 + extent, 1 << (fraction_bits + 1))
 
 
 def evaluate(

@@ -9,7 +9,12 @@ from .card_order import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, p
 from .display_list import coordinate_bits
 from .edge_widths import edge_column_bits, edge_fraction_bits, edge_remainder_bits
 from .errors import InputError
-from .fixed_point import MAX_FRACTION_BITS, guard_bits, stays_in_range
+from .fixed_point import (
+    MAX_FRACTION_BITS,
+    guard_bits,
+    on_screen_fraction_bits,
+    stays_in_range,
+)
 from .interlace import Interlace, interlace_for
 from .ranges import CHANNEL_BITS, FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .shading import Shading
@@ -20,6 +25,8 @@ MAXIMUM_BLOCK = 32
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
+
+
 @dataclass(frozen=True)
 class MachineConfiguration:
     """What the cards are built for.
@@ -28,7 +35,8 @@ class MachineConfiguration:
     ``width``, ``height`` the highest resolution, which commands and scan addresses use
     ``sub_bits``          sub-pixel bits of a vertex coordinate
     ``depth_bits``        bits of a stored depth
-    ``fraction_bits``     fraction bits of the interpolants
+    ``fraction_bits``     fraction bits of the interpolants; None means as many as make every
+                          triangle exact that has all its vertices on the screen
     ``shading``           ``"flat"`` builds no colour interpolators
     ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
     ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
@@ -67,7 +75,7 @@ class MachineConfiguration:
     height: int
     sub_bits: int = 8
     depth_bits: int = 24
-    fraction_bits: int = 16
+    fraction_bits: int = field(default=None)  # type: ignore[assignment]
     shading: Shading = "gouraud"
     words: int = 0
     maximum_units: int = 0
@@ -96,8 +104,11 @@ class MachineConfiguration:
         if not isinstance(self.cards, str):
             raise InputError(f"cards: {self.cards!r} is no card order; write one such as 2x(PMM)")
         fix("cards", parse_cards(self.cards))
+        for name, low, high in FORMAT_RANGES:
+            check_whole(name, getattr(self, name), low, high)
+        if self.fraction_bits is None:
+            fix("fraction_bits", on_screen_fraction_bits(self.width, self.height, self.sub_bits))
         for name, low, high in (
-            *FORMAT_RANGES,
             ("fraction_bits", 0, MAX_FRACTION_BITS),
             ("words", 0, MAXIMUM_WORDS),
             ("maximum_units", 0, MAXIMUM_SIZE),

@@ -8,6 +8,7 @@ ranges named below.  The hardware narrows with components of the same names.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, cast, overload
 
 import numpy as np
@@ -20,6 +21,9 @@ Array = NDArray[Any]
 #: More than the widest display list needs to be exact (see ``exact_fraction_bits``):
 #: double area below 2**44, extent below 2**13.
 MAX_FRACTION_BITS = 64
+
+#: Depths have at most 32 bits: no error is greater.
+MAXIMUM_ERROR = (1 << 32) - 1
 
 #: Masks and powers of two up to this many bits are exact in int64.
 _INT64_BITS = 62
@@ -136,6 +140,36 @@ def exact_fraction_bits(
     return bit_length(double_area * (1 + extent))
 
 
+def error_bound(fraction_bits: int, extent: int) -> Fraction:
+    """The most a carried value is off, before the floor, ``extent`` = x + y pixels on.
+
+    Start and each increment are off by at most half a unit of 2**-F.
+    """
+    return Fraction(1 + extent, 1 << (fraction_bits + 1))
+
+
+def error_fraction_bits(extent: int, max_error: int) -> int:
+    """The fewest fraction bits at which no stored value is more than ``max_error``, at least 1,
+    off, for triangles of that ``extent``: the error before the floor is at most that."""
+    bits = 0
+    while error_bound(bits, extent) > max_error:
+        bits += 1
+    return bits
+
+
+def on_screen_fraction_bits(width: int, height: int, sub_bits: int, max_error: int = 0) -> int:
+    """Fraction bits at which every triangle with all its vertices on the screen is exact, or, where
+    ``max_error`` is not 0, has no depth that is more than so many LSB off.
+
+    No such triangle has more area than half the screen, or covers more columns and rows.
+    """
+    extent = width + height - 2
+    bits = exact_fraction_bits((width << sub_bits) * (height << sub_bits), extent)
+    if max_error:
+        bits = min(bits, error_fraction_bits(extent, max_error))
+    return min(bits, MAX_FRACTION_BITS)
+
+
 def guard_bits(value_bits: int, fraction_bits: int, extent: int) -> int:
     """Bits above a value's own that tell too low from too high: the fewest, at least two.
 
@@ -163,3 +197,8 @@ def stays_in_range(fraction_bits: int, extent: int) -> bool:
 def check_fraction_bits(fraction_bits: int) -> None:
     """Raise ``InputError`` unless it is a whole number from 0 to ``MAX_FRACTION_BITS``."""
     check_whole("fraction bits", fraction_bits, 0, MAX_FRACTION_BITS)
+
+
+def check_max_error(max_error: int) -> None:
+    """Raise ``InputError`` unless it is a number of depth LSB."""
+    check_whole("max error", max_error, 0, MAXIMUM_ERROR)

@@ -8,9 +8,9 @@ from typing import Any
 
 import click
 
-from ...golden.planning.machines import MAXIMUM_ERROR, PRESETS
+from ...golden.planning.presets import PRESETS
 from ...golden.specification.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS
-from ...golden.specification.fixed_point import MAX_FRACTION_BITS
+from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
 from ..machine_options import SETUPS
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from ...golden.planning.machines import PRESETS, preset
-from ...golden.reference.triangle_setup import scene_fraction_bits
+from ...golden.planning.machine_plan import plan
+from ...golden.planning.presets import PRESETS
 from ...golden.scene_display_list import make_display_list
 from ...golden.specification.errors import InputError
 from ..engines.verilator_tool import ToolMissingError
@@ -18,7 +18,7 @@ from .progress import busy
 
 @click.command(name="engines")
 @click.option("--preset", "name", type=click.Choice(list(PRESETS)), default="paper",
-              show_default=True, help="The machine.")
+              show_default=True, help="The machine, as wide as the scene needs.")
 @click.option("--scene", default="teapot:tessellation=8", show_default=True, help="What it draws.")
 @click.option("--cards", metavar="CARDS", help="Instead of the preset's.")
 @click.option("--runs", type=click.IntRange(1), default=5, show_default=True,
@@ -42,8 +42,8 @@ def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_c
 
     size: dict[str, Any] = {axis: PRESETS[name][axis] for axis in ("width", "height")}
     listed = make_display_list(scene, **size).display_list
-    changes = {"cards": cards} if cards else {}
-    machine = preset(name, fraction_bits=scene_fraction_bits(listed), **changes)
+    asked = PRESETS[name] | {"fraction_bits": None} | ({"cards": cards} if cards else {})
+    machine = plan(listed, **asked).configuration
     try:
         with busy("measuring engines"):
             speed = measure_engines(machine, listed, runs=runs, pysim_cycles=pysim_cycles)

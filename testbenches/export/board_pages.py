@@ -17,7 +17,8 @@ from pathlib import Path
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
-from ...golden.planning.machines import preset
+from ...golden.planning.presets import PRESETS
+from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.components import COMPONENTS
 from ...hdl.machine import BOARDS
 from ..support.atomic_output import atomic_file
@@ -29,7 +30,7 @@ PRESET = "small"
 
 def board_page(name: str) -> str:
     """The page of one board, in Markdown."""
-    configuration = preset(PRESET)
+    configuration = MachineConfiguration(**PRESETS[PRESET])
     component = COMPONENTS[name](configuration)
     source = inspect.getsourcefile(type(component))
     assert source is not None

@@ -126,7 +126,7 @@ def _precision(configuration: MachineConfiguration, options: MachineOptions,
                _scene_name(scene))
     if options.max_error:
         return f"{bits}, at most {options.max_error} LSB of depth off for {subject}"
-    if options.machine().get("fraction_bits", "exact") != "exact":
+    if options.machine().get("fraction_bits") is not None:
         source = "asked for" if options.fraction_bits is not None else "the preset's"
         return f"{bits}, {source}"
     return f"{bits}, exact for {subject}"

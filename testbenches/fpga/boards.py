@@ -8,7 +8,7 @@ from typing import Any
 
 from amaranth.lib import wiring
 
-from ...golden.planning.machines import on_screen_machine
+from ...golden.planning.on_screen_widths import on_screen_widths
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.memory_unit.memory_unit import MemoryUnit
 from ..machine_options import SETUPS
@@ -52,8 +52,10 @@ class Board:
         """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
         machine = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS, "shading": "flat",
                    "memory_ports": 2} | dict(self.changes)
-        return Part(on_screen_machine(cards=cards, width=width, height=height, **machine),
-                    self.name, self.build, self.mapping)
+        configuration = MachineConfiguration(
+            cards=cards, width=width, height=height, **machine,
+            **on_screen_widths(width, height, SUB_BITS))
+        return Part(configuration, self.name, self.build, self.mapping)
 
 
 #: By the names that people choose them by.

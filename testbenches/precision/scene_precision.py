@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ...golden.organisations.organisation_of import organisation_of
+from ...golden.planning.machine_plan import plan
 from ...golden.planning.scene_needs import fitted
 from ...golden.precision.precision_study import (
     Float32Point,
@@ -25,7 +26,7 @@ from ..engines.choose_engine import AUTO
 from ..fpga.place_and_route import Part, Placement, missing_tools, place_and_route, recall_placement
 from ..frames.compare import compare
 from ..frames.simulation import simulate_frame
-from ..machine_options import MachineOptions, load_scene, plan_machine, resolution_warnings
+from ..machine_options import MachineOptions, load_scene, resolution_warnings
 from ..support.measurement_cache import measured_once, package_hash
 
 #: In place of an engine: no frame is simulated.
@@ -163,8 +164,8 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
     options = options or PrecisionOptions()
     step("loading the scene")
     listed = load_scene(scene, options)
-    machine = plan_machine(listed.display_list, replace(options, fraction_bits="exact")
-                           ).configuration
+    machine = plan(listed.display_list,
+                   **replace(options, fraction_bits="exact").for_plan()).configuration
     ideal = unquantised_scene(scene, listed.display_list,
                               "flat" if options.shading == "flat" else "gouraud")
     shifts = organisation_of(machine).resolution.shifts
@@ -172,8 +173,8 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
     step("drawing the picture before quantisation")
     study = PrecisionStudy(display_list, ideal, shading=machine.shading,
                            **shifts)
-    machines = {bits: plan_machine(listed.display_list, replace(options, fraction_bits=bits)
-                                   ).configuration for bits in study.sweep()}
+    machines = {bits: plan(listed.display_list, **replace(options, fraction_bits=bits).for_plan()
+                           ).configuration for bits in study.sweep()}
     points = []
     for bits in study.sweep():
         step(f"drawing with {bits} fraction bits")

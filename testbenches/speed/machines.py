@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from ...golden.planning.machines import on_screen_machine
+from ...golden.planning.on_screen_widths import on_screen_widths
 from ...golden.specification.configuration import MachineConfiguration
 from ..machine_options import SETUPS
 from .cases import DEPTH_BITS, SIZE, SUB_BITS
@@ -86,9 +86,10 @@ def _machine(elements: int, units: int, ports: int, setup: str, block: int, skew
              fifo: int) -> BenchMachine:
     if skew is None:
         skew = ports == 1 and units > 1 and block == 1
-    configuration = on_screen_machine(
+    configuration = MachineConfiguration(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        memory_ports=ports, block=block, skew=skew, **SETUPS[setup])
+        memory_ports=ports, block=block, skew=skew, **SETUPS[setup],
+        **on_screen_widths(SIZE, SIZE, SUB_BITS))
     return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration)

@@ -5,7 +5,7 @@ from hdl_bench.bench import Watch, simulate
 from hdl_bench.pictures import exact_words, prepare, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, pauses
 
-from cardcage.golden.planning.machines import preset
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification import commands
@@ -139,7 +139,7 @@ def test_a_frame_read_back(order):
 @pytest.mark.parametrize(("name", "cards", "units"),
                          [("tiny", "PM", 1), ("small", "PMMPMM", 4), ("paper", "PMMMM" * 4, 16)])
 def test_presets_are_machines(name, cards, units):
-    configuration = preset(name)
+    configuration = MachineConfiguration(**PRESETS[name])
     assert isinstance(configuration, MachineConfiguration)
     machine = Machine(configuration=configuration)
     assert "".join("P" if isinstance(card, ProcessingElement) else "M"

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode, ResponseKind
@@ -68,7 +68,7 @@ def golden_picture(configuration, display_list):
 def draw(display_list, *, cards, seed=1, **options):
     """Simulate one frame from random memory and check every pixel; the ``Simulation``."""
     options.setdefault("clocks_per_pixel", 2)
-    configuration = configure(display_list, cards=cards, **options)
+    configuration = wide_machine(display_list, cards=cards, **options)
     simulation = simulate(configuration, display_list, PysimEngine(), memory_seed=seed)
     check(configuration, display_list, simulation)
     return simulation
@@ -98,7 +98,7 @@ def check_scans():
     # The last pixel drawn is the next picture's first, and nearer than it is there.
     quick = joined(random_list(1, 2), triangles([PIXEL], [[0] * 3], [[[1, 2, 3]] * 3]))
     slow = joined(triangles([PIXEL], [[1] * 3], [[[250, 240, 230]] * 3]), random_list(2, 150))
-    configuration = configure(slow, cards="PM", clocks_per_pixel=2)
+    configuration = wide_machine(slow, cards="PM", clocks_per_pixel=2)
     job = Job(
         configuration,
         commands=[*frame_commands(configuration, quick), *frame_commands(configuration, slow),
@@ -153,7 +153,7 @@ def check_frames(lists, *, cards="PM", seed=1, abandoned=(), engine=None, **opti
     Returns (kind, value, cycle) of all responses.
     """
     options.setdefault("clocks_per_pixel", 2)
-    configurations = [configure(listed, cards=cards, shading="gouraud", **options)
+    configurations = [wide_machine(listed, cards=cards, shading="gouraud", **options)
                       for listed in lists]
     configuration = max(configurations, key=lambda machine: machine.fraction_bits)
     interlace = configuration.interlace

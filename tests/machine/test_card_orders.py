@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 from frames import check_bit_true, draw, golden_picture, random_list
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.simulation import simulate
 
@@ -34,7 +34,7 @@ def test_coarse_precision_gives_every_order_the_same_errors():
     """On lattices of one, two and four units the strides are multiples of the one increment."""
     pictures = []
     for cards in ("PM", "PMM", "PMPMMM", "PMMMPM"):
-        configuration = configure(LIST, cards=cards, fraction_bits=0,
+        configuration = wide_machine(LIST, cards=cards, fraction_bits=0,
                                   clocks_per_pixel=2)
         simulation = simulate(configuration, LIST, PysimEngine(), memory_seed=4)
         check_bit_true(configuration, LIST, simulation)

@@ -19,10 +19,10 @@ from cardcage.golden.hard_cases.catalogue import hard_case
 from cardcage.golden.hard_cases.rational import covered
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference import triangle_setup as golden_setup
-from cardcage.golden.reference.bit_true import error_bound
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.fixed_point import error_bound
 from cardcage.golden.specification.sampling_grid import Grid
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.simulation import simulate

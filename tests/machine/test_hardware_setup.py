@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import check, check_bit_true, joined, random_list, triangles
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.triangle_setup import prepare
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.commands import OPCODE_BITS, Opcode
@@ -24,7 +24,7 @@ INVISIBLE = triangles(
 
 def both_ways(display_list, engine, **fields):
     """The frame of one machine, from vertices and from prepared triangles."""
-    configuration = configure(display_list, setup="hardware", **fields)
+    configuration = wide_machine(display_list, setup="hardware", **fields)
     frames = []
     for opcode, fraction_bits in ((Opcode.TRIANGLE, None),
                                   (Opcode.PREPARED_TRIANGLE, configuration.fraction_bits)):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from amaranth.sim import Simulator
 from frames import PIXEL, check, draw, random_list, triangles
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches.engines import pysim_engine
 from cardcage.testbenches.frames.simulation import simulate
@@ -65,7 +65,7 @@ def test_no_update_is_lost_on_one_pixel(probe, order, cards, skew):
     depth_of = np.concatenate([rows[:, np.newaxis], depth.reshape(15, 4)], axis=1).ravel()
     display_list = triangles([ROW, *[PIXEL] * 4] * 15, np.repeat(depth_of, 3),
                              source.integers(0, 256, (75, 3, 3)))
-    configuration = configure(display_list, cards=cards, clocks_per_pixel=4, skew=skew)
+    configuration = wide_machine(display_list, cards=cards, clocks_per_pixel=4, skew=skew)
     simulation = simulate(configuration, display_list, pysim_engine.PysimEngine(), memory_seed=1)
     check(configuration, display_list, simulation)
     assert simulation.depth[3, 2] == depth.min()

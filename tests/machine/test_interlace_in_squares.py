@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 from frames import draw, random_list, spans_twice
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import depth_complexity
 from cardcage.golden.specification.commands import Fault, ResponseKind
 from cardcage.testbenches.engines.engine import Job
@@ -54,7 +54,7 @@ def test_boards_pulled_share_by_share(cards, resolution):
 
 @pytest.mark.parametrize("cards", ["PMMPMP M", "PMMPMMMM PMM"])
 def test_shares_that_boards_pulled_made_unequal_are_refused(cards):
-    configuration = configure(random_list(1, 1), cards=cards, block=4, allow_orphans=True,
+    configuration = wide_machine(random_list(1, 1), cards=cards, block=4, allow_orphans=True,
                               maximum_units=8, clocks_per_pixel=2, fraction_bits=20)
     elements = configuration.processing_elements
     job = Job(configuration, commands=[1, 4], responses=elements + 1 + 3, maximum_cycles=2000)

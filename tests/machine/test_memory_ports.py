@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from amaranth.sim import Simulator
 from frames import check, triangles
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.engines import pysim_engine
 from cardcage.testbenches.frames.simulation import simulate
 
@@ -61,7 +61,7 @@ def draw_twice(monkeypatch, ports, size=48, **machine):
     right = [[0.5, 0.5], [size - 0.5, 0.5], [0.5, size - 0.5]]
     depth = np.array([[3000, 2500, 2000], [2900, 2400, 1900]])
     listed = triangles([right] * 2, depth, np.full((2, 3, 3), 99), width=size, height=size)
-    configuration = configure(listed, clocks_per_pixel=4, memory_ports=ports,
+    configuration = wide_machine(listed, clocks_per_pixel=4, memory_ports=ports,
                               **{"cards": "PM"} | machine)
     counts = Ports()
     monkeypatch.setattr(pysim_engine, "Simulator", counts.attach)

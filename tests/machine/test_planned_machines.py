@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import check, check_bit_true, random_list, triangles
+from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_estimate import estimate_cycles
 from cardcage.golden.planning.machine_plan import plan
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.planning.scene_needs import fitted
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
@@ -102,7 +102,7 @@ def test_the_estimate_of_cycles():
         pytest.skip(f"simulator verilator: {missing}")
     scenes = ["teapot:tessellation=3", "sphereflake:depth=1", "tetra", "random:n=60,size=50,seed=2"]
     lists = [make_display_list(name, width=64, height=64).display_list for name in scenes]
-    machine = configure(lists[0], cards="2x(PMM)", fraction_bits=8, clocks_per_pixel=2)
+    machine = wide_machine(lists[0], cards="2x(PMM)", fraction_bits=8, clocks_per_pixel=2)
     for name, display_list in zip(scenes, lists, strict=True):
         drawn = simulate(machine, display_list, VerilatorEngine())
         estimate = estimate_cycles(machine, display_list)

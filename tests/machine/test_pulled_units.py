@@ -2,8 +2,8 @@
 
 import pytest
 from frames import check, expected_video, golden_picture, random_list
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
@@ -14,7 +14,8 @@ LIST = random_list(11, 10, width=16, height=16)
 
 def cage(cards, **options):
     """Cards built for up to 16 units of 16 words: 16 of them hold 16 by 16."""
-    return configure(LIST, cards=cards, words=16, maximum_units=16, clocks_per_pixel=2, **options)
+    return wide_machine(LIST, cards=cards, words=16, maximum_units=16, clocks_per_pixel=2,
+                        **options)
 
 
 @pytest.mark.parametrize(("cards", "resolution"), [

@@ -4,8 +4,8 @@ import numpy as np
 from frames import check_bit_true, draw, triangles
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.simulation import simulate
 
@@ -68,7 +68,7 @@ def test_the_machine_draws_what_golden_draws(display_list, cards, seed, clocks_p
        st.sampled_from(["flat", "gouraud"]))
 def test_below_exact_the_machine_is_its_bit_true_model(display_list, cards, seed, fraction_bits,
                                                        shading):
-    configuration = configure(display_list, cards=cards, fraction_bits=fraction_bits,
+    configuration = wide_machine(display_list, cards=cards, fraction_bits=fraction_bits,
                               shading=shading, clocks_per_pixel=2)
     simulation = simulate(configuration, display_list, PysimEngine(), memory_seed=seed,
                           stall_seed=seed)

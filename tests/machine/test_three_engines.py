@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from frames import check, random_list
+from wide_machines import wide_machine
 
-from cardcage.golden.planning.machines import configure
 from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
@@ -19,7 +19,7 @@ def test_three_identical_frames():
     except ToolMissingError as missing:
         pytest.skip(f"simulators verilator and cocotb: {missing}")
     display_list = random_list(17, 10, width=12, height=10)
-    configuration = configure(display_list, cards="PMPMMM", clocks_per_pixel=2)
+    configuration = wide_machine(display_list, cards="PMPMMM", clocks_per_pixel=2)
     engines = [PysimEngine(), VerilatorEngine(), CocotbEngine()]
     job = frame_job(configuration, display_list, memory_seed=6)
     runs = [engine.run(job) for engine in engines]

@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ....golden.cycles.cycle_estimate import CycleEstimate, cards_for_cycles, estimate_cycles
-from ....golden.planning.machine_plan import Plan, triangle_bits
+from ....golden.planning.machine_plan import Plan, plan, triangle_bits
 from ....golden.scene_display_list import SceneDisplayList
 from ....golden.specification.errors import InputError
 from ...machine_options import (
     MachineOptions,
     load_scene,
     option_words,
-    plan_machine,
     resolution_warnings,
 )
 
@@ -62,7 +61,7 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
         options = replace(options, cards=cards_for_cycles(listed.display_list, cycles, **{
             name: settled[name] for name in ("words", "clocks_per_pixel", "memory_ports", "block")
             if name in settled}))
-    planned = plan_machine(listed.display_list, options)
+    planned = plan(listed.display_list, **options.for_plan())
     return ScenePlan(
         scene=listed,
         plan=planned,

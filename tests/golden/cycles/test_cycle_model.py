@@ -10,12 +10,12 @@ from functools import partial
 import numpy as np
 import pytest
 from cycle_lists import CARDS, owner, scene
+from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import SetupTiming, predict_cycles
 from cardcage.golden.cycles.element_latencies import Pipeline
 from cardcage.golden.cycles.element_spans import lattice_spans
 from cardcage.golden.organisations.organisation_of import organisation_of
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.coverage import Triangles
 from cardcage.golden.reference.exact import fragments
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -128,7 +128,7 @@ def test_the_arrays_say_what_the_recurrence_says(cards, skew, seed):
     # The last triangle has a span in every element, which keeps the list in one part.
     listed.position[-1] = 256 * np.array([[0, 0], [39, 0], [0, 27]])
     pipeline = Pipeline(**{field.name: pick.randrange(1, 9) for field in fields(Pipeline)})
-    configuration = configure(listed, cards=cards, memory_ports=2, skew=skew)
+    configuration = wide_machine(listed, cards=cards, memory_ports=2, skew=skew)
     setup = pick.choice((None, SetupTiming(interval=20, latency=30, inside=3),
                          SetupTiming(interval=2, latency=11, waiting=4, inside=7)))
     cycles = []
@@ -146,7 +146,7 @@ def test_the_arrays_say_what_the_recurrence_says(cards, skew, seed):
 def test_parts_of_a_list_hang_together(cards, monkeypatch):
     """Cut into parts of a few triangles it takes as long, but for spans that lie across a cut."""
     listed = scene(20, n=300)
-    configuration = configure(listed, cards=cards, memory_ports=2)
+    configuration = wide_machine(listed, cards=cards, memory_ports=2)
     whole = predict_cycles(configuration, listed)
     monkeypatch.setattr("cardcage.golden.cycles.cycle_model.lattice_spans",
                         partial(lattice_spans, row_limit=200))
@@ -157,19 +157,19 @@ def test_parts_of_a_list_hang_together(cards, monkeypatch):
 
 def test_the_binding_bound():
     listed = scene(4)
-    machine = configure(listed, cards="PM")
+    machine = wide_machine(listed, cards="PM")
     assert predict_cycles(machine, listed).binding == "busiest port"
     assert predict_cycles(replace(machine, memory_ports=2), listed).binding == "busiest element"
     slow = predict_cycles(machine, listed, setup=SetupTiming(interval=1000))
     assert slow.binding == "set-up"
     assert slow.cycles - 1000 < slow.bound <= slow.cycles + 1000
     pixels = scene(4, n=300, size=1)
-    many = configure(pixels, cards="8x(PM)", memory_ports=2)
+    many = wide_machine(pixels, cards="8x(PM)", memory_ports=2)
     assert predict_cycles(many, pixels).binding == "broadcast"
 
 
 def test_an_empty_list_takes_no_time():
     listed = scene(5)
     none = DisplayList(40, 28, listed.position[:0], listed.depth[:0], listed.color[:0])
-    prediction = predict_cycles(configure(listed, cards="PMM"), none)
+    prediction = predict_cycles(wide_machine(listed, cards="PMM"), none)
     assert (prediction.cycles, prediction.bound) == (0, 0)

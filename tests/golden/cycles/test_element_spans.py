@@ -6,9 +6,9 @@ from collections import Counter
 
 import pytest
 from cycle_lists import CARDS, owner, scene, spans_of
+from wide_machines import wide_machine
 
 from cardcage.golden.organisations.organisation_of import organisation_of
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import fragments
 
 
@@ -17,7 +17,7 @@ from cardcage.golden.reference.exact import fragments
     ("2x(PM)", 2, False), ("4x(PMM)", 4, False), ("8x(PM)", 8, False)])
 def test_spans_hold_every_fragment_of_their_element(cards, block, skew):
     listed = scene(1)
-    configuration = configure(listed, cards=cards, block=block, skew=skew)
+    configuration = wide_machine(listed, cards=cards, block=block, skew=skew)
     triangles, parts = spans_of(configuration, listed)
     assert len(parts) > 1 and [part.begin for part in parts[1:]] == [
         part.end for part in parts[:-1]]
@@ -45,7 +45,7 @@ def test_spans_hold_every_fragment_of_their_element(cards, block, skew):
 @pytest.mark.parametrize("skew", [False, True])
 def test_rows_are_those_of_the_lattice(cards, skew):
     listed = scene(2)
-    configuration = configure(listed, cards=cards, skew=skew)
+    configuration = wide_machine(listed, cards=cards, skew=skew)
     triangles, parts = spans_of(configuration, listed)
     for number, block in enumerate(organisation_of(configuration).blocks):
         for part in parts:

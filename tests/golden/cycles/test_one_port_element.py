@@ -7,6 +7,7 @@ import random
 import numpy as np
 import pytest
 from cycle_lists import owner, scene, spans_of
+from wide_machines import wide_machine
 
 from cardcage.golden.cycles.element_latencies import Pipeline
 from cardcage.golden.cycles.one_port_element import OnePort
@@ -15,7 +16,6 @@ from cardcage.golden.cycles.port_accesses import PortAccesses
 from cardcage.golden.cycles.row_clocks import entries_of
 from cardcage.golden.cycles.two_port_element import TwoPorts
 from cardcage.golden.organisations.organisation_of import organisation_of
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.reference.exact import draw, fragments
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.queues import FRAGMENTS_WAITING, depth_lanes
@@ -24,7 +24,7 @@ from cardcage.golden.specification.queues import FRAGMENTS_WAITING, depth_lanes
 def test_written_fragments():
     """With one port and one unit a span takes an access for each fragment and for each write."""
     listed = scene(3, n=150)
-    configuration = configure(listed, cards="PM", clocks_per_pixel=256)
+    configuration = wide_machine(listed, cards="PM", clocks_per_pixel=256)
     triangles, parts = spans_of(configuration, listed)
     ports = PortAccesses(configuration, listed, triangles)
     reads, writes, clocks = sum(ports.of(part).sum(axis=(0, 2)) for part in parts)
@@ -145,7 +145,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
     """Where nothing is written or scanned, one port is as good as two, span by span."""
     pick = np.random.default_rng(seed)
     listed = scene(30 + seed, n=80, size=int(pick.choice((4, 12, 25))))
-    configuration = configure(listed, cards="PMPMMM", clocks_per_pixel=256, memory_ports=2)
+    configuration = wide_machine(listed, cards="PMPMMM", clocks_per_pixel=256, memory_ports=2)
     _, (spans,) = spans_of(configuration, listed, 1 << 20)
     pipeline = Pipeline()
     entries = entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)

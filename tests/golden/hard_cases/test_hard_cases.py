@@ -12,6 +12,7 @@ from cardcage.golden.hard_cases.rational import rational_picture
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference.triangle_setup import prepare, scene_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.errors import InputError
 from cardcage.golden.specification.fixed_point import ceil_divide
 from cardcage.golden.specification.picture import NO_PRIMITIVE
@@ -146,7 +147,7 @@ def test_every_fragment_at_coarser_precisions_is_within_the_bound(case, fraction
     triangle = np.searchsorted(prepared.primitive, fragments.primitive)
     right = fragments.x - prepared.left[triangle]
     down = fragments.y - prepared.top[triangle]
-    per_extent = [bit_true.error_bound(fraction_bits, extent)
+    per_extent = [fixed_point.error_bound(fraction_bits, extent)
                   for extent in range(int((right + down).max()) + 1)]
     bound = np.array([ceil_divide(bound.numerator, bound.denominator)
                       for bound in per_extent])[right + down]

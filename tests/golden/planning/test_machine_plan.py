@@ -7,14 +7,16 @@ from math import ceil
 import numpy as np
 import pytest
 from plan_scenes import CARDS, random_list, triangles
+from wide_machines import wide_machine
 
 from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.planning.machine_plan import plan
-from cardcage.golden.planning.machines import configure, on_screen_machine
+from cardcage.golden.planning.on_screen_widths import on_screen_widths
 from cardcage.golden.planning.scene_needs import fewest_sub_bits, fitted, scene_needs, with_sub_bits
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference.triangle_setup import carry_edges, prepare, scene_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
 from cardcage.golden.specification.errors import InputError
@@ -128,7 +130,7 @@ def carried_range(display_list, fraction_bits):
 
 
 def machine_of(display_list, fraction_bits):
-    return configure(display_list, cards=CARDS, fraction_bits=fraction_bits)
+    return wide_machine(display_list, cards=CARDS, fraction_bits=fraction_bits)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -160,7 +162,7 @@ def test_carried_depth_has_no_bit_to_spare():
         # Where the error may come to a quarter it is told from what is too low.
         coarse = machine_of(display_list, 5)
         assert not coarse.stays_in_range
-        error = ceil(bit_true.error_bound(5, needs.extent))
+        error = ceil(fixed_point.error_bound(5, needs.extent))
         assert needs.depth_integer_bits(coarse) == signed_bits([-error, depth + error])
 
 
@@ -279,8 +281,8 @@ def on_screen_list(seed, width, height, sub_bits, count=60):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_machine_for_what_is_on_the_screen(seed, width, height, sub_bits):
     display_list = on_screen_list(seed, width, height, sub_bits)
-    machine = on_screen_machine(cards="PM", width=width, height=height, sub_bits=sub_bits,
-                                depth_bits=12)
+    machine = MachineConfiguration(cards="PM", width=width, height=height, sub_bits=sub_bits,
+                                   depth_bits=12, **on_screen_widths(width, height, sub_bits))
     assert fitted(machine, display_list) is display_list
     assert machine.edges_on_screen and machine.stays_in_range
     bits = machine.fraction_bits
@@ -316,7 +318,7 @@ def test_other_formats_are_refused(field, value):
 def test_a_machine_for_every_triangle_refuses_none(seed):
     display_list = random_list(seed, 40)
     for bits in (0, 3, None):
-        machine = configure(display_list, cards=CARDS, fraction_bits=bits)
+        machine = wide_machine(display_list, cards=CARDS, fraction_bits=bits)
         assert fitted(machine, display_list) is display_list
         planned = plan(display_list, cards=CARDS, fraction_bits=bits).configuration
         for name in ("coordinate_bits", "edge_column_bits", "edge_remainder_bits",

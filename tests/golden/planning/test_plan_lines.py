@@ -9,24 +9,22 @@ import pytest
 from plan_scenes import CARDS, random_list, triangles
 
 from cardcage.golden.planning.machine_plan import plan, triangle_bits
-from cardcage.golden.planning.machines import (
-    error_fraction_bits,
-    full_machine,
-    on_screen_fraction_bits,
-)
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.planning.scene_needs import fitted, scene_needs
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.errors import InputError
+from cardcage.golden.specification.fixed_point import error_fraction_bits, on_screen_fraction_bits
 
 
 @pytest.mark.parametrize("extent", [0, 1, 7, 30, 1022, 8190])
 def test_bits_for_an_error_are_the_fewest(extent):
     for error in (1, 2, 5, 100, 5000):
         bits = error_fraction_bits(extent, error)
-        assert ceil(bit_true.error_bound(bits, extent)) <= error
-        assert bits == 0 or ceil(bit_true.error_bound(bits - 1, extent)) > error
+        assert ceil(fixed_point.error_bound(bits, extent)) <= error
+        assert bits == 0 or ceil(fixed_point.error_bound(bits - 1, extent)) > error
 
 
 @pytest.mark.parametrize("error", [1, 2, 7])
@@ -51,7 +49,26 @@ def test_never_more_bits_than_exact():
     display_list = triangles([[8, 8], [9, 24], [24, 9]])
     exact_bits = scene_fraction_bits(display_list)
     assert plan(display_list, cards=CARDS, max_error=1).configuration.fraction_bits <= exact_bits
-    assert full_machine(cards="PM", width=1, height=1, max_error=1).fraction_bits <= 64
+    assert on_screen_fraction_bits(1, 1, 8, max_error=1) <= on_screen_fraction_bits(1, 1, 8)
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_fields_that_are_given(flat):
+    """The list's own formats may be given too, as they are in a preset; others are refused."""
+    display_list = random_list(3)
+    if flat:
+        display_list = replace(display_list, color=display_list.color[:, :1].repeat(3, axis=1))
+    machine = plan(display_list, cards=CARDS).configuration
+    assert (machine.width, machine.height, machine.depth_bits) == (
+        display_list.width, display_list.height, display_list.depth_bits)
+    assert machine.shading == ("flat" if flat else "gouraud")
+    given = {"fraction_bits": 3, "shading": "gouraud", "fifo_depth": 5, "clocks_per_pixel": 3}
+    changed = plan(display_list, **PRESETS["tiny"] | given).configuration
+    assert {name: getattr(changed, name) for name in given} == given
+    assert changed.cards == PRESETS["tiny"]["cards"]
+    for name in ("width", "height", "depth_bits"):
+        with pytest.raises(InputError, match=f"^{name}: the display list has"):
+            plan(display_list, cards=CARDS, **{name: 1 + getattr(display_list, name)})
 
 
 @pytest.mark.parametrize("arguments", [

@@ -12,7 +12,8 @@ from cardcage.golden.precision.worst_case_search import (
     find_worst,
     stored_errors,
 )
-from cardcage.golden.reference import bit_true, exact
+from cardcage.golden.reference import exact
+from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.errors import InputError
 from testbenches.studies import bound_search
 
@@ -57,7 +58,7 @@ def test_stored_errors_reach_the_bound_rounded_up(interpolant, size, fraction_bi
         case = find_worst(width=size[0], height=size[1], interpolant=interpolant,
                           fraction_bits=fraction_bits, seed=seed)
         errors, extent = stored_errors(case)
-        bounds = np.array([ceil(bit_true.error_bound(fraction_bits, steps))
+        bounds = np.array([ceil(fixed_point.error_bound(fraction_bits, steps))
                            for steps in range(sum(size) - 1)])[extent]
         assert extent.max() == sum(size) - 2
         assert (abs(errors) <= bounds).all()
@@ -99,7 +100,7 @@ def test_the_command_prints_its_table():
 
 
 def test_the_command_fails_where_the_bound_is_exceeded(monkeypatch):
-    monkeypatch.setattr(bit_true, "error_bound",
+    monkeypatch.setattr(fixed_point, "error_bound",
                         lambda fraction_bits, extent: Fraction(extent, 1 << fraction_bits + 1))
     done = CliRunner().invoke(bound_search.main, ["--size", "8x8", "--fraction-bits", "2",
                                                   "--seeds", "8"])

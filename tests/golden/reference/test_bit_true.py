@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.reference.triangle_setup import prepare, scene_fraction_bits
+from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.display_list import DisplayList, coordinate_bits
 from cardcage.golden.specification.errors import InputError
 
@@ -101,7 +102,7 @@ def test_error_stays_within_the_bound(display_list, shifts, fraction_bits):
         box = prepare(one, fraction_bits=0, **options)
         extent = x - box.left[0] + y - box.top[0]
         for pixel in range(len(y)):
-            bound = ceil(bit_true.error_bound(fraction_bits, int(extent[pixel])))
+            bound = ceil(fixed_point.error_bound(fraction_bits, int(extent[pixel])))
             at = y[pixel], x[pixel]
             assert abs(got.depth[at] - expected.depth[at]) <= bound
             difference = got.color[at].astype(int) - expected.color[at]
@@ -136,7 +137,7 @@ def test_carried_values_are_off_by_at_most_the_bound_and_nearly_so_much():
             value = (z0 + Fraction((px * (y2 - y0) - (x2 - x0) * py) * (z1 - z0)
                                    + ((x1 - x0) * py - px * (y1 - y0)) * (z2 - z0), area)
                      + Fraction(abs(area) // 2 * 2 + 1, 2 * abs(area)))
-            bound = bit_true.error_bound(fraction_bits, right + down)
+            bound = fixed_point.error_bound(fraction_bits, right + down)
             assert abs(carried - value) <= bound
             worst = max(worst, abs(carried - value) / bound)
     assert worst > Fraction(9, 10)
@@ -163,7 +164,7 @@ def test_every_triangle_of_a_tiny_screen(fraction_bits):
     double_area = abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
     assert not error[2**fraction_bits > double_area * (1 + right + down)].any()
     for extent in range(3):
-        bound = ceil(bit_true.error_bound(fraction_bits, extent))
+        bound = ceil(fixed_point.error_bound(fraction_bits, extent))
         assert error[right + down == extent].max() <= bound
     assert len(fragments) > 20_000
     # D is at most 25 here and x + y at most 2: seven bits are enough, five are not.
@@ -183,7 +184,7 @@ def test_saturates_and_never_wraps():
         assert np.array_equal(got.winner, expected.winner)
         drawn = expected.winner == 0
         assert got.depth[drawn].min() >= 0 and got.depth[drawn].max() <= 2**24 - 2
-        bound = ceil(bit_true.error_bound(0, 1022))
+        bound = ceil(fixed_point.error_bound(0, 1022))
         assert abs(got.depth - expected.depth)[drawn].max() <= bound
         assert abs(got.color.astype(int) - expected.color)[drawn].max() <= min(bound, 255)
         assert (got.depth != expected.depth).any()

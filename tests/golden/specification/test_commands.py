@@ -6,7 +6,7 @@ from amaranth.lib import data
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cardcage.golden.planning.machines import preset
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference import triangle_setup as setup
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.specification import commands
@@ -16,9 +16,9 @@ from cardcage.golden.specification.display_list import DisplayList
 from cardcage.hdl.backplane import words as layouts
 
 CONFIGURATIONS = {
-    "tiny": preset("tiny"),
-    "small": preset("small"),
-    "paper": preset("paper"),
+    "tiny": MachineConfiguration(**PRESETS["tiny"]),
+    "small": MachineConfiguration(**PRESETS["small"]),
+    "paper": MachineConfiguration(**PRESETS["paper"]),
     "flat": MachineConfiguration("PMM", 20, 12, sub_bits=3, depth_bits=9, fraction_bits=0,
                                  shading="flat"),
     "least": MachineConfiguration("PM", 1, 1, sub_bits=1, depth_bits=2, fraction_bits=0),

@@ -2,13 +2,10 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from cardcage.golden.planning.machines import PRESETS, configure, preset
-from cardcage.golden.reference.triangle_setup import scene_fraction_bits
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.specification.configuration import MAXIMUM_WORDS, MachineConfiguration
-from cardcage.golden.specification.display_list import DisplayList
 from cardcage.golden.specification.errors import InputError
 from cardcage.golden.specification.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
 
@@ -160,13 +157,27 @@ def test_widths_hold_the_precision_contract():
     assert not replace(configuration, edge_column_bits=11).edges_on_screen
 
 
+@pytest.mark.parametrize("formats", [
+    {"width": 16, "height": 16}, {"width": 97, "height": 61, "sub_bits": 3},
+    {"width": 1, "height": 1}, {"width": 4096, "height": 4096, "words": 64}])
+def test_default_fraction_bits_are_for_the_largest_triangle_on_the_screen(formats):
+    machine = MachineConfiguration("PM", **formats)
+    width, height = machine.width << machine.sub_bits, machine.height << machine.sub_bits
+    reach = machine.width + machine.height - 2
+    assert machine.fraction_bits == (width * height * (1 + reach)).bit_length()
+    assert machine == MachineConfiguration("PM", **formats, fraction_bits=None)
+    assert machine == MachineConfiguration("PM", **formats, fraction_bits=machine.fraction_bits)
+    # It is a number from then on, which a change of other fields keeps.
+    assert replace(machine, depth_bits=9).fraction_bits == machine.fraction_bits
+
+
 def test_narrower_words():
     """Each follows what it is told; what it is not told holds every triangle."""
-    wide = MachineConfiguration(**GOOD)
+    wide = MachineConfiguration(**GOOD, fraction_bits=16)
     assert (wide.coordinate_bits, wide.edge_column_bits, wide.edge_remainder_bits) == (14, 7, 14)
     assert wide.edge_fraction_bits == 17  # 16383 * 8 < 2**17
-    narrow = MachineConfiguration(**GOOD, edge_remainder_bits=5, depth_integer_bits=9,
-                                  channel_integer_bits=3)
+    narrow = MachineConfiguration(**GOOD, fraction_bits=16, edge_remainder_bits=5,
+                                  depth_integer_bits=9, channel_integer_bits=3)
     assert narrow.edge_fraction_bits == 8  # 31 * 8 < 2**8
     assert narrow.edge_word_bits == 7 + 8
     assert (narrow.depth_plane_bits, narrow.channel_plane_bits) == (9 + 16, 3 + 16)
@@ -174,36 +185,13 @@ def test_narrower_words():
     assert replace(wide, fraction_bits=2).depth_plane_bits < wide.depth_plane_bits
 
 
-def scene(flat):
-    color = np.array([[[1, 2, 3]] * 3], np.uint8)
-    if not flat:
-        color[0, 1] = 9
-    return DisplayList(width=32, height=16, sub_bits=4, depth_bits=12, color=color,
-                       position=np.array([[[0, 0], [200, 30], [40, 150]]], np.int32),
-                       depth=np.array([[0, 1000, 4000]], np.int64))
-
-
-@pytest.mark.parametrize("flat", [True, False])
-def test_a_machine_for_a_display_list(flat):
-    display_list = scene(flat)
-    configuration = configure(display_list, cards="PM")
-    assert (configuration.width, configuration.height) == (32, 16)
-    assert (configuration.sub_bits, configuration.depth_bits) == (4, 12)
-    assert configuration.fraction_bits == scene_fraction_bits(display_list) > 0
-    assert configuration.shading == ("flat" if flat else "gouraud")
-    changed = configure(display_list, cards="PMM", fraction_bits=3, shading="gouraud", fifo_depth=4)
-    assert (changed.fraction_bits, changed.shading, changed.fifo_depth) == (3, "gouraud", 4)
-
-
 def test_presets():
     assert set(PRESETS) == {"tiny", "small", "paper"}
-    paper = preset("paper")
+    paper = MachineConfiguration(**PRESETS["paper"])
     assert (paper.processing_elements, paper.units, paper.width, paper.height) == (4, 16, 512, 512)
     assert paper.cards == "PMMMM" * 4
-    assert preset("tiny").units == 1
-    assert preset("small", fifo_depth=3).fifo_depth == 3
-    with pytest.raises(InputError, match="tiny"):
-        preset("huge")
+    assert MachineConfiguration(**PRESETS["tiny"]).units == 1
+    assert MachineConfiguration(**PRESETS["small"], fifo_depth=3).fifo_depth == 3
 
 
 def test_it_is_frozen():

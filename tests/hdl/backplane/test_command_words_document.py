@@ -11,7 +11,7 @@ from hdl_bench.bench import simulate
 from hdl_bench.pictures import exact_words
 from hdl_bench.streams import Sink, Source
 
-from cardcage.golden.planning.machines import preset
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference import triangle_setup as setup
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.specification import commands
@@ -23,7 +23,7 @@ from cardcage.hdl.backplane import words as layouts
 from cardcage.hdl.machine import Machine
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "command-words.md"
-TINY = preset("tiny")
+TINY = MachineConfiguration(**PRESETS["tiny"])
 NOTHING = "\N{EN DASH}"  # an empty cell
 
 
@@ -74,8 +74,8 @@ def test_symbols():
 
 CONFIGURATIONS = {
     "tiny": TINY,
-    "paper": preset("paper"),
-    "flat": preset("tiny", shading="flat"),
+    "paper": MachineConfiguration(**PRESETS["paper"]),
+    "flat": MachineConfiguration(**PRESETS["tiny"], shading="flat"),
     "coarse fractions": MachineConfiguration("PM", 300, 40, sub_bits=3, depth_bits=16,
                                              fraction_bits=0),
     "guard": MachineConfiguration("PM", 16, 17, fraction_bits=6),

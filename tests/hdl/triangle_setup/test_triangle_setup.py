@@ -9,9 +9,9 @@ import pytest
 from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import prepare, prepared_values, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source, no_pause, pauses
+from wide_machines import wide_machine
 
 from cardcage.golden.planning.machine_plan import plan
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.planning.scene_needs import fitted
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.specification import commands
@@ -158,7 +158,7 @@ def test_planned_for_a_scene():
     listed = random_triangles("planned", 30, width=24, height=16, sub_bits=3, depth_bits=8)
     listed = replace(listed, position=listed.position // 4)
     configuration = plan(listed, cards="PM", setup="hardware").configuration
-    full = configure(listed, cards="PM")
+    full = wide_machine(listed, cards="PM")
     assert configuration.edge_word_bits < full.edge_word_bits
     assert configuration.coordinate_bits < full.coordinate_bits
     run(configuration, fitted(configuration, listed))

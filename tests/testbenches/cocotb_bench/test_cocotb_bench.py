@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.cocotb_bench import simulators
@@ -33,7 +33,7 @@ from cardcage.testbenches.frames.simulation import simulate
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "simulate-the-verilog.md"
 LISTED = make_display_list("random:n=10,size=8,seed=5", width=8, height=8).display_list
-MACHINE = configure(LISTED, cards="PMMPMM", clocks_per_pixel=2)
+MACHINE = plan(LISTED, cards="PMMPMM", clocks_per_pixel=2).configuration
 SPOILT_ADDRESS = 5
 
 
@@ -126,7 +126,7 @@ endmodule
     with pytest.raises(ProtocolError, match=r"cycle \d+: responses: valid fell before 0x"):
         engine.run(frame_job(MACHINE, LISTED, stall_seed=1))
     with pytest.raises(ProtocolError, match="they are of different machines"):
-        engine.run(frame_job(configure(LISTED, cards="PMMPMM", fraction_bits=3), LISTED))
+        engine.run(frame_job(plan(LISTED, cards="PMMPMM", fraction_bits=3).configuration, LISTED))
 
 
 def test_verilog_that_does_not_build_is_one_sentence():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.activity import Activity
 from cardcage.golden.specification.commands import ResponseKind
@@ -24,7 +24,7 @@ from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_v
 from cardcage.testbenches.frames.frame_job import frame_job
 
 LIST = make_display_list("random:n=25,size=20,seed=3", width=16, height=12).display_list
-PLAIN = configure(LIST, cards="PMPMMM", clocks_per_pixel=2)
+PLAIN = plan(LIST, cards="PMPMMM", clocks_per_pixel=2).configuration
 OBSERVED = replace(PLAIN, observe=True)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.command_line.cli import main
@@ -26,7 +26,7 @@ from cardcage.testbenches.frames.simulation import simulate
 from cardcage.testbenches.support import cache as model_cache
 
 LIST = make_display_list("random:n=25,size=9,seed=3", width=16, height=12).display_list
-CONFIGURATION = configure(LIST, cards="PMPMMM", clocks_per_pixel=2)
+CONFIGURATION = plan(LIST, cards="PMPMMM", clocks_per_pixel=2).configuration
 
 try:
     find_verilator()

@@ -13,9 +13,11 @@ import pytest
 from click.testing import CliRunner
 from refusals import BAD_SCENES_AND_MACHINES, listing, refusal
 
-from cardcage.golden.planning.machines import on_screen_fraction_bits, preset
+from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.fixed_point import on_screen_fraction_bits
 from cardcage.testbenches.command_line.cli import main
 
 SCENE = "random:n=12,size=8,seed=5"
@@ -77,7 +79,7 @@ def test_on_screen_bits_are_enough_and_needed(size):
 def test_a_preset_keeps_its_formats():
     assert run("--preset", "tiny", "--shading", "flat").exit_code == 0
     configuration = json.loads(Path("machine.json").read_text())["configuration"]
-    assert configuration["fraction_bits"] == preset("tiny").fraction_bits
+    assert configuration["fraction_bits"] == MachineConfiguration(**PRESETS["tiny"]).fraction_bits
     assert configuration["shading"] == "flat"
 
 

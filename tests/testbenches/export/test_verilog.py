@@ -5,8 +5,9 @@ import re
 import pytest
 from verilog_tools import icarus, verilator_lint, yosys
 
-from cardcage.golden.planning.machines import preset
 from cardcage.hdl.backplane.connectors import memory_bus_bits
+from cardcage.golden.planning.presets import PRESETS
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.backplane.words import planes_layout, span_layout, walked_outline_layout
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.rasteriser.interpolator import fragment_layout
@@ -26,7 +27,8 @@ def texts():
 
     def text(name, shading):
         if (name, shading) not in made:
-            made[name, shading] = machine_verilog(preset(name, shading=shading))
+            configuration = MachineConfiguration(**PRESETS[name], shading=shading)
+            made[name, shading] = machine_verilog(configuration)
         return made[name, shading]
 
     return text
@@ -52,7 +54,7 @@ def test_accepted(texts, tmp_path, name, shading):
 
 def test_a_machine_that_sets_triangles_up_is_accepted(tmp_path):
     """And its description says how long that takes."""
-    configuration = preset("tiny", setup="hardware", setup_interval=256)
+    configuration = MachineConfiguration(**PRESETS["tiny"], setup="hardware", setup_interval=256)
     text = machine_verilog(configuration)
     assert "central_broadcast_controller__setup__depth_plane__divider" in text
     (tmp_path / "machine.v").write_text(text)
@@ -83,7 +85,8 @@ def test_icarus_accepts_it(texts, tmp_path, name, shading):
 
 def test_synthesis_accepts_it(tmp_path):
     """For Lattice's ECP5: memories become block RAM, products become multipliers."""
-    configuration = preset("tiny", shading="flat", fraction_bits=4)
+    configuration = MachineConfiguration(
+        **PRESETS["tiny"] | {"shading": "flat", "fraction_bits": 4})
     (tmp_path / "machine.v").write_text(machine_verilog(configuration))
     status, output = yosys(tmp_path, "read_verilog machine.v\nsynth_ecp5 -top machine "
                            "-run :map_ffs\ncheck -assert\ntee -o stat.txt stat\n")
@@ -96,7 +99,7 @@ def test_synthesis_accepts_it(tmp_path):
 def test_ports_come_from_the_signature(tmp_path, name):
     """Of every component, in the smallest machine too, where some signals have no bits; and
     each passes the lint by itself."""
-    configuration = preset("tiny")
+    configuration = MachineConfiguration(**PRESETS["tiny"])
     component = component_for(configuration, name)
     expected = component_ports(component)
     described = described_ports(component)
@@ -136,7 +139,7 @@ def test_no_memory_has_contents(texts):
 
 
 def test_description(texts):
-    configuration = preset("paper")
+    configuration = MachineConfiguration(**PRESETS["paper"])
     facts = describe(configuration, texts("paper", "gouraud"))
     ports = declared_ports(texts("paper", "gouraud"), "machine")
     assert {port["name"]: (port["direction"], port["width"]) for port in facts["ports"]} == ports
@@ -180,5 +183,5 @@ def test_the_command_lines_names_are_the_components():
 
 def test_every_register_has_a_name():
     """Amaranth calls a signal that it found no name for ``$signal`` or ``$like``."""
-    text = machine_verilog(preset("tiny"))
+    text = machine_verilog(MachineConfiguration(**PRESETS["tiny"]))
     assert not re.findall(r"\$(?:signal|like)\b", text)

@@ -6,7 +6,8 @@ import re
 import pytest
 from amaranth.hdl import Fragment
 
-from cardcage.golden.planning.machines import preset
+from cardcage.golden.planning.presets import PRESETS
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.fpga import place_and_route as module
 from cardcage.testbenches.fpga.place_and_route import (
@@ -21,7 +22,8 @@ from cardcage.testbenches.fpga.place_and_route import (
 from cardcage.testbenches.fpga.register_wrapper import bench_verilog
 
 #: Small, and without multipliers for colours.
-SMALL = preset("tiny", shading="flat", fraction_bits=2, fifo_depth=2)
+SMALL = MachineConfiguration(
+    **PRESETS["tiny"] | {"shading": "flat", "fraction_bits": 2, "fifo_depth": 2})
 
 #: What yosys 0.70 wrote of a processing element (``stat -json``), shortened.
 CELLS = json.loads("""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from frames import expected_video
 
-from cardcage.golden.planning.machines import configure
+from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.frames.compare import compare
@@ -34,7 +34,7 @@ def frame(configuration, picture) -> Simulation:
 
 @pytest.fixture
 def machine(listed):
-    return configure(listed, cards="PM")
+    return plan(listed, cards="PM").configuration
 
 
 @pytest.fixture
@@ -106,7 +106,7 @@ def test_background_that_nothing_falls_on(listed, machine, simulation):
 
 
 def test_few_fraction_bits_are_held_to_the_bit_true_model(listed):
-    machine = configure(listed, cards="PM", fraction_bits=1)
+    machine = plan(listed, cards="PM", fraction_bits=1).configuration
     reference, approximate = exact.draw(listed), bit_true.draw(listed, fraction_bits=1)
     assert not np.array_equal(reference.depth, approximate.depth)
     comparison = compare(machine, listed, frame(machine, approximate))
@@ -119,7 +119,7 @@ def test_few_fraction_bits_are_held_to_the_bit_true_model(listed):
 
 def test_coarser_machine(listed):
     """Four shown pixels hang on one of the machine's; each is compared."""
-    machine = configure(listed, cards="PM", words=64)
+    machine = plan(listed, cards="PM", words=64).configuration
     interlace = machine.interlace
     assert (interlace.width, interlace.height) == (8, 8)
     picture = exact.draw(listed, x_shift=1, y_shift=1)
@@ -136,7 +136,7 @@ def test_coarser_machine(listed):
 
 
 def test_orphans_are_counted_and_not_compared(listed):
-    machine = configure(listed, cards="MPM", allow_orphans=True)
+    machine = plan(listed, cards="MPM", allow_orphans=True).configuration
     right = frame(machine, exact.draw(listed))
     right.depth[::2] = -1  # two units interlace in y
     right.video[::2] = 99

@@ -298,7 +298,8 @@ def test_a_frame_that_differs(recording, tampering, monkeypatch):
 
 
 def test_a_bound_that_is_exceeded(recorded, monkeypatch):
-    monkeypatch.setattr("cardcage.golden.reference.bit_true.error_bound", lambda bits, extent: 1)
+    monkeypatch.setattr("cardcage.golden.specification.fixed_point.error_bound",
+                        lambda bits, extent: 1)
     result = run(*ARGUMENTS, "--engine", "none")
     assert result.exit_code == 1
     assert re.match(r"FAILED: 0 fraction bits: depth off by \d+ LSB, .*the bound is 1\n",

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from PIL import Image
+from wide_machines import wide_machine
 
 from cardcage import testbenches
 from cardcage.golden.cycles.cycle_model import predict_cycles
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.planning.scene_needs import fitted
 from cardcage.golden.reference.exact import depth_complexity, draw
 from cardcage.golden.specification.display_list import DisplayList
@@ -114,7 +114,7 @@ def test_the_mesh_lies_in_three_layers():
     ("2x(PMM)", {})])
 def test_measured_and_predicted(cards, options):
     cases = [small_case(1, 20), small_case(2, 35)]
-    configuration = replace(configure(cases[1].frame, cards=cards, **options), observe=True,
+    configuration = replace(wide_machine(cases[1].frame, cards=cards, **options), observe=True,
                             fraction_bits=40)
     measurements = measure(configuration, cases, PysimEngine())
     for case, measured in zip(cases, measurements, strict=True):
@@ -147,7 +147,7 @@ class Tampering:
 
 def test_a_wrong_picture_has_no_speed():
     case = small_case(3, 4)
-    configuration = configure(case.frame, cards="PM")
+    configuration = wide_machine(case.frame, cards="PM")
     with pytest.raises(DifferentError, match=r"random 3.* on PM: 1 colours and 0 depths differ"):
         measure(configuration, [case], Tampering())
     assert (draw(case.frame).winner >= 0).any()
