@@ -89,7 +89,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     planned = replace(machine, **{
         "coordinate_bits": needs.coordinate_bits,
         "edge_column_bits": needs.edge_column_bits,
-        "edge_remainder_bits": needs.edge_remainder_bits,
+        "edge_height_bits": needs.edge_height_bits,
         "edge_fraction_bits": needs.edge_fraction_bits,
         "depth_integer_bits": needs.depth_integer_bits(machine),
         "channel_integer_bits": needs.channel_integer_bits(machine),
@@ -128,11 +128,11 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
              f"every coordinate is a multiple of {1 << drops}/{unit << drops} pixel" if drops else
              f"some coordinate is an odd multiple of 1/{unit} pixel" if planned.sub_bits > 1 else
              "pixel centres need one",
-             coordinate_bits=0, edge_column_bits=0, edge_remainder_bits=0, edge_fraction_bits=0),
+             coordinate_bits=0, edge_column_bits=0, edge_height_bits=0, edge_fraction_bits=0),
         bits("coordinate bits", "coordinate_bits", f"vertices lie from {low} to {high} pixels"),
         bits("edge column bits", "edge_column_bits",
              "edges cross columns {} to {}".format(*needs.columns)),
-        bits("edge remainder bits", "edge_remainder_bits",
+        bits("edge height bits", "edge_height_bits",
              f"the highest edge is {needs.edge_height:,}/{unit} pixel high", edge_fraction_bits=0),
         bits("edge fraction bits", "edge_fraction_bits",
              "an edge's height in sub-pixels, times the rows it is followed down, is at most "

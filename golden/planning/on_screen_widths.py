@@ -17,6 +17,6 @@ def on_screen_widths(width: int, height: int, sub_bits: int) -> dict[str, int]:
     return {
         "coordinate_bits": 1 + farthest.bit_length(),
         "edge_column_bits": width.bit_length(),
-        "edge_remainder_bits": rows.bit_length(),
+        "edge_height_bits": rows.bit_length(),
         "edge_fraction_bits": fewest_edge_fraction_bits(rows, rows * height),
     }

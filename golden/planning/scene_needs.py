@@ -81,7 +81,7 @@ class SceneNeeds:
         return max(_signed_bits(low, high), self.x_bits + 1)
 
     @property
-    def edge_remainder_bits(self) -> int:
+    def edge_height_bits(self) -> int:
         return max(1, self.edge_height.bit_length())
 
     @property
@@ -234,7 +234,7 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
     for field, needed in (
         ("coordinate_bits", needs.coordinate_bits),
         ("edge_column_bits", needs.edge_column_bits),
-        ("edge_remainder_bits", needs.edge_remainder_bits),
+        ("edge_height_bits", needs.edge_height_bits),
         ("edge_fraction_bits", needs.edge_fraction_bits),
         ("depth_plane_bits", needs.depth_integer_bits(configuration) + bits),
         ("channel_plane_bits", needs.channel_integer_bits(configuration) + bits),

@@ -9,7 +9,7 @@ Widths at which every triangle fits (``edge_widths``, and below), b the display 
 bits, s its sub-pixel bits:
 
     edge column      ``edge_column_bits``      b - s + 1, signed
-    edge remainder   ``edge_remainder_bits``   b, unsigned; the height of an edge as well
+    edge height      ``edge_height_bits``      b, unsigned; an edge's remainder as well
     edge word        column bits + ``edge_fraction_bits``
     depth word       ``depth_word_bits``       depth bits + guard + fraction bits
     colour word      ``color_word_bits``       8 + guard + fraction bits

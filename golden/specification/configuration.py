@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from .card_order import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
 from .display_list import coordinate_bits
-from .edge_widths import edge_column_bits, edge_fraction_bits, edge_remainder_bits
+from .edge_widths import edge_column_bits, edge_fraction_bits, edge_height_bits
 from .errors import InputError
 from .fixed_point import (
     MAX_FRACTION_BITS,
@@ -62,7 +62,7 @@ class MachineConfiguration:
     ``coordinate_bits``      of a signed vertex coordinate
     ``edge_column_bits``     of a column on an edge's own rows; signed, where there are more than
                              a column of the screen needs
-    ``edge_remainder_bits``  of an edge's height, in sub-pixel units
+    ``edge_height_bits``     of an edge's height, in sub-pixel units
     ``edge_fraction_bits``   of a carried edge: as many as make its column exact on every row
     ``depth_integer_bits``   of carried depth, its sign included where it has one
     ``channel_integer_bits`` of a carried colour channel, likewise
@@ -92,7 +92,7 @@ class MachineConfiguration:
     observe: bool = False
     coordinate_bits: int = 0
     edge_column_bits: int = 0
-    edge_remainder_bits: int = 0
+    edge_height_bits: int = 0
     edge_fraction_bits: int = 0
     depth_integer_bits: int = 0
     channel_integer_bits: int = 0
@@ -129,7 +129,7 @@ class MachineConfiguration:
         for name, most in self._widest().items():
             check_whole(name, getattr(self, name), 0, most)
             fix(name, getattr(self, name) or most)
-        most = edge_fraction_bits(self.edge_remainder_bits, self.height)
+        most = edge_fraction_bits(self.edge_height_bits, self.height)
         check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
         if not self.allow_orphans:
@@ -137,7 +137,7 @@ class MachineConfiguration:
         self._check_block()
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
-                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             square_bits=self.square_bits, share_bits=self.share_bits,
                              skew=self.skew)
             if full.words > MAXIMUM_WORDS:
                 raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
@@ -183,7 +183,7 @@ class MachineConfiguration:
         return {
             "coordinate_bits": coordinate,
             "edge_column_bits": edge_column_bits(coordinate, self.sub_bits),
-            "edge_remainder_bits": edge_remainder_bits(coordinate),
+            "edge_height_bits": edge_height_bits(coordinate),
         }
 
     # Cards
@@ -213,7 +213,7 @@ class MachineConfiguration:
 
     def _interlace_of(self, units: int) -> Interlace:
         return interlace_for(self.width, self.height, words=self.words, units=units,
-                             block_bits=self.square_bits, share_bits=self.share_bits,
+                             square_bits=self.square_bits, share_bits=self.share_bits,
                              skew=self.skew)
 
     @property

@@ -13,23 +13,24 @@ def edge_column_bits(coordinate_bits: int, sub_bits: int) -> int:
     return coordinate_bits - sub_bits + 1
 
 
-def edge_remainder_bits(coordinate_bits: int) -> int:
-    """Width of ``Edges.remainder``, ``remainder_step`` and ``denominator``, unsigned.
+def edge_height_bits(coordinate_bits: int) -> int:
+    """Width of an edge's height, ``Edges.denominator``, unsigned.
 
-    An edge is at most 2**b - 1 units high, and remainders are less than that.
+    An edge is at most 2**b - 1 units high.  ``Edges.remainder`` and ``remainder_step`` are less
+    than its height, so they have the same width.
     """
     return coordinate_bits
 
 
-def edge_fraction_bits(remainder_bits: int, height: int) -> int:
-    """Fraction bits at which a carried edge is exact on each of up to ``height`` rows.
+def edge_fraction_bits(height_bits: int, rows: int) -> int:
+    """Fraction bits at which a carried edge is exact on each of up to ``rows`` rows.
 
     ``CarriedEdges.start`` lies at least 1 / 2D from a whole number, D being the edge's
     height, and so does the value on any later row.  Start and step, each rounded to
     nearest at 2**-f, err by at most (1 + row) * 2**-(f+1) together; hence 2**f > D * rows
-    will do, and D is below ``2**remainder_bits``.
+    will do, and D is below ``2**height_bits``.
     """
-    return (((1 << remainder_bits) - 1) * height).bit_length()
+    return (((1 << height_bits) - 1) * rows).bit_length()
 
 
 def fewest_edge_fraction_bits(height: int, rows_height: int) -> int:

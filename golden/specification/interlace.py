@@ -7,7 +7,7 @@ unit number is the *least* significant bit of x, the next one that of y, and so 
 a processing element owns consecutive numbers, and so the processing elements
 interlace finely and a power-of-two share is itself a regular lattice.
 
-Where processing elements interlace in squares, of ``2**block_bits`` pixels a side,
+Where processing elements interlace in squares, of ``2**square_bits`` pixels a side,
 the bits of x and y above those inside a square name the processing element; the
 units of one, ``2**share_bits``, still interlace pixel by pixel, inside its squares.
 
@@ -40,7 +40,7 @@ class Interlace:
     """The bijection pixel ↔ (unit, address) of a machine of ``2**unit_bits`` units.
 
     ``width``, ``height``: the machine's own resolution; ``x_shift``, ``y_shift``: the low bits
-    of a highest-resolution address that do not exist in it.  ``block_bits``: log2 of the side of
+    of a highest-resolution address that do not exist in it.  ``square_bits``: log2 of the side of
     the squares in which processing elements interlace, of ``2**share_bits`` units each; both 0
     where all units interlace pixel by pixel, whomever they belong to.  ``skew``: the last bit of
     the number is skewed; not in squares.
@@ -54,16 +54,16 @@ class Interlace:
     height: int
     x_shift: int = 0
     y_shift: int = 0
-    block_bits: int = 0
+    square_bits: int = 0
     share_bits: int = 0
     skew: bool = False
 
     def __post_init__(self) -> None:
-        if not 0 <= self.share_bits <= min(self.unit_bits, 2 * self.block_bits):
-            raise ValueError(f"share_bits must be 0 to {min(self.unit_bits, 2 * self.block_bits)}, "
-                             f"not {self.share_bits}")
-        if self.skew and self.block_bits:
-            raise ValueError("skew wants block_bits 0: in squares units alternate along x already")
+        most = min(self.unit_bits, 2 * self.square_bits)
+        if not 0 <= self.share_bits <= most:
+            raise ValueError(f"share_bits must be 0 to {most}, not {self.share_bits}")
+        if self.skew and self.square_bits:
+            raise ValueError("skew wants square_bits 0: in squares units alternate along x already")
 
     @property
     def units(self) -> int:
@@ -74,7 +74,7 @@ class Interlace:
         """Source of each bit of the unit number, most significant first: ``("x", 0)`` is x's
         least significant bit.  ``skew_bit`` changes the last."""
         lattice_bits = self.unit_bits - self.share_bits
-        order = [("xy"[place % 2], self.block_bits + place // 2) for place in range(lattice_bits)]
+        order = [("xy"[place % 2], self.square_bits + place // 2) for place in range(lattice_bits)]
         if lattice_bits % 2:
             order[-1] = ("y", order[-1][1])
         inside = [("xy"[place % 2], place // 2) for place in range(self.share_bits)]
@@ -124,18 +124,18 @@ class Interlace:
         """Words of each unit that hold the picture."""
         return self.pitch * self.rows
 
-    def stride_bits(self, block_bits: int) -> tuple[int, int]:
+    def stride_bits(self, unit_block_bits: int) -> tuple[int, int]:
         """Log2 of the distance in x and in y between neighbouring squares of an aligned block of
-        ``2**block_bits`` units, a whole share at least; a distance of 1 is that of squares side
-        by side.  Where the block is ``shifted`` the one in y is that of neighbouring rows."""
-        fixed = [axis for axis, _ in self.bit_order[: self.unit_bits - block_bits]]
-        shifted = self.shifted(block_bits)
+        ``2**unit_block_bits`` units, a whole share at least; a distance of 1 is that of squares
+        side by side.  Where the block is ``shifted`` the one in y is that of neighbouring rows."""
+        fixed = [axis for axis, _ in self.bit_order[: self.unit_bits - unit_block_bits]]
+        shifted = self.shifted(unit_block_bits)
         return fixed.count("x") + shifted, fixed.count("y") - shifted
 
-    def shifted(self, block_bits: int) -> bool:
-        """Every other row of an aligned block of ``2**block_bits`` units is shifted by half the
-        distance in x."""
-        return self.skew_bit is not None and block_bits == 0
+    def shifted(self, unit_block_bits: int) -> bool:
+        """Every other row of an aligned block of ``2**unit_block_bits`` units is shifted by half
+        the distance in x."""
+        return self.skew_bit is not None and unit_block_bits == 0
 
     def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
         number = x * 0
@@ -188,7 +188,7 @@ def _extent(size: int, mask: int) -> int:
     return _without(last, mask) + 1
 
 
-def interlace_for(width: int, height: int, *, words: int, units: int, block_bits: int = 0,
+def interlace_for(width: int, height: int, *, words: int, units: int, square_bits: int = 0,
                   share_bits: int = 0, skew: bool = False) -> Interlace:
     """The interlace of ``units`` units (a power of two) of ``words`` words each.
 
@@ -207,7 +207,7 @@ def interlace_for(width: int, height: int, *, words: int, units: int, block_bits
             height=_ceil_shift(height, y_shift),
             x_shift=x_shift,
             y_shift=y_shift,
-            block_bits=block_bits,
+            square_bits=square_bits,
             share_bits=share_bits,
             skew=skew,
         )

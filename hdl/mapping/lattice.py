@@ -97,21 +97,21 @@ class LatticeBlock(wiring.Component):
         shares = range(self.configuration.id_bits)
         if self.configuration.square_bits:
             shares = (self.configuration.share_bits,)
-        for block_bits in shares:
-            size = 1 << block_bits
-            aligned = self.first[:block_bits] == 0
+        for unit_block_bits in shares:
+            size = 1 << unit_block_bits
+            aligned = self.first[:unit_block_bits] == 0
             with m.If(aligned & (self.first + size <= self.end)):
                 m.d.comb += self.after.eq(self.first + size)
                 with m.Switch(self.total):
                     for interlace in self.configuration.interlaces():
-                        if block_bits <= interlace.unit_bits:
-                            x_stride, y_stride = interlace.stride_bits(block_bits)
+                        if unit_block_bits <= interlace.unit_bits:
+                            x_stride, y_stride = interlace.stride_bits(unit_block_bits)
                             with m.Case(interlace.units):
                                 m.d.comb += [self.lattice.x_mask.eq((1 << x_stride) - 1),
                                              self.lattice.y_mask.eq((1 << y_stride) - 1)]
                                 if self.configuration.skew:
                                     m.d.comb += self.lattice.shifted.eq(
-                                        interlace.shifted(block_bits))
+                                        interlace.shifted(unit_block_bits))
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):
@@ -123,6 +123,6 @@ class LatticeBlock(wiring.Component):
                     for place, (axis, bit) in enumerate(sources):
                         offset = self.lattice.x_offset if axis == "x" else self.lattice.y_offset
                         if place >= interlace.share_bits:
-                            m.d.comb += offset[bit - interlace.block_bits].eq(self.first[place])
+                            m.d.comb += offset[bit - interlace.square_bits].eq(self.first[place])
         return m
 

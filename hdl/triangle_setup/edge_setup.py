@@ -40,9 +40,9 @@ class EdgeSetup(wiring.Component):
         The edge's upper end, from the centre of the machine's first column.
     run: In(signed(coordinate_bits + 1))
         Columns from the upper to the lower end.
-    height: In(edge_remainder_bits)
+    height: In(edge_height_bits)
         Rows from the upper to the lower end; positive.
-    distance: In(edge_remainder_bits)
+    distance: In(edge_height_bits)
         From the upper end down to the first sample line.
     start_done, step_done: Out(1)
         High for one clock with each result.
@@ -52,14 +52,14 @@ class EdgeSetup(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = c = configuration
-        position, remainder = position_bits(c), c.edge_remainder_bits
+        position, height = position_bits(c), c.edge_height_bits
         grid = grid_layout(c)
         # x by height, and distance by run, which is at most the height: below 2**(both widths).
         self._product = PipelinedMultiplier(a_bits=max(position, c.coordinate_bits + 1),
-                                            b_bits=remainder + 1, pairs=2)
-        common = {"divisor_bits": remainder, "fraction_bits": c.edge_fraction_bits,
+                                            b_bits=height + 1, pairs=2)
+        common = {"divisor_bits": height, "fraction_bits": c.edge_fraction_bits,
                   "quotient_bits": c.edge_word_bits + 1, "interval": c.setup_interval}
-        self._start_divider = Divider(dividend_bits=position + remainder - c.sub_bits + 3, **common)
+        self._start_divider = Divider(dividend_bits=position + height - c.sub_bits + 3, **common)
         self._step_divider = Divider(
             dividend_bits=c.coordinate_bits + 2 + (grid["y_shift"].width > 0), **common)
         super().__init__({
@@ -67,8 +67,8 @@ class EdgeSetup(wiring.Component):
             "begin": In(1),
             "x": In(signed(position)),
             "run": In(signed(c.coordinate_bits + 1)),
-            "height": In(remainder),
-            "distance": In(remainder),
+            "height": In(height),
+            "distance": In(height),
             "start_done": Out(1),
             "step_done": Out(1),
             "start_result": Out(c.edge_word_bits),

@@ -63,7 +63,7 @@ def test_widths_are_the_fewest(seed, x_shift, y_shift):
     assert needs.edge_column_bits == (max(1, max(columns).bit_length()) if on_screen else
                                       max(signed_bits(columns), needs.x_bits + 1))
     assert needs.edge_height == max(heights)
-    assert needs.edge_remainder_bits == max(heights).bit_length()
+    assert needs.edge_height_bits == max(heights).bit_length()
     assert needs.edge_rows_height == max(products)
     assert needs.coordinate_bits == signed_bits(display_list.position.ravel().tolist())
     drawn = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
@@ -211,7 +211,7 @@ LIMITS = {
     # A full screen: columns 0 to 16 in place of 0 to 15 need one bit more.
     "edge_column_bits": triangles([[0, 0], [256, 0], [0, 256]], [[256, 256], [256, 0], [0, 256]]),
     # 64 sub-pixel units high.
-    "edge_remainder_bits": triangles([[8, 8], [40, 24], [12, 72]]),
+    "edge_height_bits": triangles([[8, 8], [40, 24], [12, 72]]),
     "edge_fraction_bits": triangles([[8, 8], [40, 24], [12, 72]]),
     "coordinate_bits": triangles([[8, 8], [128, 24], [12, 72]]),
     "depth_plane_bits": triangles([[0, 0], [200, 8], [8, 200]], depth=128),
@@ -229,16 +229,16 @@ def test_one_bit_less_is_refused(name):
     assert scene_needs(listed).drawn > 0
     field = FIELDS.get(name, name)
     narrower = replace(machine, **{field: getattr(machine, field) - 1}
-                       | ({"edge_fraction_bits": 0} if name == "edge_remainder_bits" else {}))
+                       | ({"edge_fraction_bits": 0} if name == "edge_height_bits" else {}))
     with pytest.raises(InputError, match=f"display list: {name} ") as raised:
         fitted(narrower, display_list)
     assert "\n" not in str(raised.value)
     # A list that needs a bit less is drawn on it.
-    if name == "edge_remainder_bits":
+    if name == "edge_height_bits":
         position = listed.position.copy()
         position[0, 2, 1] -= 1 << (listed.sub_bits - 1)
         lower = replace(listed, position=position)
-        assert scene_needs(lower).edge_remainder_bits == machine.edge_remainder_bits - 1
+        assert scene_needs(lower).edge_height_bits == machine.edge_height_bits - 1
         assert fitted(narrower, lower) is lower
 
 
@@ -251,7 +251,7 @@ def test_columns_off_the_screen_take_a_sign():
     assert [machine.edge_column_bits for machine in machines] == [5, 6]
     for machine in machines:
         assert fitted(machine, inside).triangles == 1
-    wide = replace(machines[0], coordinate_bits=0, edge_remainder_bits=0)
+    wide = replace(machines[0], coordinate_bits=0, edge_height_bits=0)
     with pytest.raises(InputError, match="edge_column_bits 6, the machine is built for 5"):
         fitted(wide, outside)
     # Beyond the right side as well, whatever fits the columns.
@@ -296,12 +296,12 @@ def test_a_machine_for_what_is_on_the_screen(seed, width, height, sub_bits):
     where = place, found.x - prepared.left[place], found.y - prepared.top[place]
     stored = stored_in_words(prepared.depth, machine, machine.depth_plane_bits, where, None)
     np.testing.assert_array_equal(stored, found.depth)
-    for field in ("coordinate_bits", "edge_column_bits", "edge_remainder_bits",
+    for field in ("coordinate_bits", "edge_column_bits", "edge_height_bits",
                   "edge_fraction_bits"):
         if (fewer := getattr(machine, field) - 1) == 0:
             continue
         narrower = {field: fewer} | ({"edge_fraction_bits": 0}
-                                     if field == "edge_remainder_bits" else {})
+                                     if field == "edge_height_bits" else {})
         with pytest.raises(InputError, match=f"display list: {field} "):
             fitted(replace(machine, **narrower), display_list)
 
@@ -321,7 +321,7 @@ def test_a_machine_for_every_triangle_refuses_none(seed):
         machine = wide_machine(display_list, cards=CARDS, fraction_bits=bits)
         assert fitted(machine, display_list) is display_list
         planned = plan(display_list, cards=CARDS, fraction_bits=bits).configuration
-        for name in ("coordinate_bits", "edge_column_bits", "edge_remainder_bits",
+        for name in ("coordinate_bits", "edge_column_bits", "edge_height_bits",
                      "edge_fraction_bits", "depth_plane_bits", "channel_plane_bits"):
             assert getattr(planned, name) <= getattr(machine, name)
 

@@ -109,7 +109,7 @@ def test_lines_say_what_the_machine_has():
                                                                 for line in planned.lines}
     for item, field in (("sub-pixel bits", "sub_bits"), ("coordinate bits", "coordinate_bits"),
                         ("edge column bits", "edge_column_bits"), ("FIFO depth", "fifo_depth"),
-                        ("edge remainder bits", "edge_remainder_bits"),
+                        ("edge height bits", "edge_height_bits"),
                         ("fraction bits", "fraction_bits")):
         assert (lines[item].value, lines[item].full) == (str(getattr(machine, field)),
                                                          str(getattr(full, field)))
@@ -119,7 +119,7 @@ def test_lines_say_what_the_machine_has():
         replace(full, shading="flat"))
     assert "no colour interpolator" in lines["interpolants"].reason
     assert "no line stepper" in lines["lines"].reason
-    for name in ("edge_column_bits", "edge_remainder_bits"):
+    for name in ("edge_column_bits", "edge_height_bits"):
         saved = triangle_bits(full) - triangle_bits(replace(full, edge_fraction_bits=0, **{
             name: getattr(machine, name)}))
         assert lines[name.replace("_", " ")].saves == saved > 0

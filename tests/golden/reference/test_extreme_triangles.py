@@ -23,7 +23,7 @@ from cardcage.golden.specification.display_list import DisplayList, coordinate_b
 from cardcage.golden.specification.edge_widths import (
     edge_column_bits,
     edge_fraction_bits,
-    edge_remainder_bits,
+    edge_height_bits,
 )
 from cardcage.golden.specification.sampling_grid import Grid
 
@@ -214,8 +214,8 @@ def test_widths_of_quotient_and_remainder(n, s):
     bits, corners = whole_range(n, s)
     low, high = corners[0][0], corners[3][0]
     widths = {"column_bits": edge_column_bits(bits, s),
-              "remainder_bits": edge_remainder_bits(bits),
-              "sum_bits": edge_remainder_bits(bits) + 1}
+              "remainder_bits": edge_height_bits(bits),
+              "sum_bits": edge_height_bits(bits) + 1}
     assert list(widths.values()) == [bits - s + 1, bits, bits + 1]
     failed = set()
     # One at the right end of the range, all but straight down, its remainders near its
@@ -242,7 +242,7 @@ def test_widths_of_carried_edges(n, s, ends):
     bits, corners = whole_range(n, s)
     low, high = corners[0][0], corners[3][0]
     column_bits = edge_column_bits(bits, s)
-    fraction_bits = edge_fraction_bits(edge_remainder_bits(bits), size)
+    fraction_bits = edge_fraction_bits(edge_height_bits(bits), size)
     assert fraction_bits == bits + n
     failed = []
     for x0, x1 in ((high, high - 1), ends):

@@ -19,7 +19,7 @@ from cardcage.golden.specification.display_list import DisplayList, coordinate_b
 from cardcage.golden.specification.edge_widths import (
     edge_column_bits,
     edge_fraction_bits,
-    edge_remainder_bits,
+    edge_height_bits,
     fewest_edge_fraction_bits,
 )
 from cardcage.golden.specification.errors import InputError
@@ -126,7 +126,7 @@ def test_numbers_fit_the_stated_widths(shifts):
         display_list = DisplayList(20, 20, position, np.zeros((2000, 3), np.int64),
                                    np.zeros((2000, 3, 3), np.uint8), sub_bits=sub_bits)
         prepared = prepare(display_list, fraction_bits=0, x_shift=shifts[0], y_shift=shifts[1])
-        remainder_limit = 1 << edge_remainder_bits(display_list.coordinate_bits)
+        remainder_limit = 1 << edge_height_bits(display_list.coordinate_bits)
         column_limit = 1 << (edge_column_bits(display_list.coordinate_bits, sub_bits) - 1)
         parts = ((prepared.long, prepared.top, prepared.bottom),
                  (prepared.upper, prepared.top, prepared.middle),
@@ -216,7 +216,7 @@ def test_carried_edges_are_exact(seed):
     display_list = random_list(seed)
     x_shift, y_shift = SHIFTS[seed % len(SHIFTS)]
     bits = edge_column_bits(display_list.coordinate_bits, display_list.sub_bits)
-    fraction_bits = edge_fraction_bits(edge_remainder_bits(display_list.coordinate_bits),
+    fraction_bits = edge_fraction_bits(edge_height_bits(display_list.coordinate_bits),
                                        display_list.height)
     prepared = prepare(display_list, fraction_bits=0, x_shift=x_shift, y_shift=y_shift)
     rows = {"long": prepared.bottom - prepared.top, "upper": prepared.middle - prepared.top,

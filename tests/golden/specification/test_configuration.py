@@ -28,7 +28,7 @@ GOOD = {"cards": "PMMPMM", "width": 16, "height": 8}
     "timing": [compact_timing(8, 16), compact_timing(16, 9)],
     "coordinate_bits": [-1, 15, 7.0],
     "edge_column_bits": [-1, 8],
-    "edge_remainder_bits": [-1, 15],
+    "edge_height_bits": [-1, 15],
     "edge_fraction_bits": [-1, 18],
     "depth_integer_bits": [-1, 65, None],
     "channel_integer_bits": [-1, 65],
@@ -143,7 +143,7 @@ def test_widths_hold_the_precision_contract():
     configuration = MachineConfiguration("PM", 512, 512, fraction_bits=9)
     assert configuration.coordinate_bits == 9 + 2 + 8
     assert configuration.edge_column_bits == 9 + 2 + 1
-    assert configuration.edge_remainder_bits == 19
+    assert configuration.edge_height_bits == 19
     assert configuration.depth_plane_bits == 24 + 2 + 9
     assert configuration.channel_plane_bits >= 8 + 2 + 9
     # From 2**F > 2 * 1023 on values stay where they are: no guard, no sign.
@@ -174,9 +174,9 @@ def test_default_fraction_bits_are_for_the_largest_triangle_on_the_screen(format
 def test_narrower_words():
     """Each follows what it is told; what it is not told holds every triangle."""
     wide = MachineConfiguration(**GOOD, fraction_bits=16)
-    assert (wide.coordinate_bits, wide.edge_column_bits, wide.edge_remainder_bits) == (14, 7, 14)
+    assert (wide.coordinate_bits, wide.edge_column_bits, wide.edge_height_bits) == (14, 7, 14)
     assert wide.edge_fraction_bits == 17  # 16383 * 8 < 2**17
-    narrow = MachineConfiguration(**GOOD, fraction_bits=16, edge_remainder_bits=5,
+    narrow = MachineConfiguration(**GOOD, fraction_bits=16, edge_height_bits=5,
                                   depth_integer_bits=9, channel_integer_bits=3)
     assert narrow.edge_fraction_bits == 8  # 31 * 8 < 2**8
     assert narrow.edge_word_bits == 7 + 8

@@ -13,10 +13,10 @@ SIZES = st.integers(1, 80)
 @st.composite
 def interlaces(draw):
     """Pixel by pixel, skewed or not, or in squares of every side."""
-    unit_bits, block_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
-    share_bits = draw(st.integers(0, min(unit_bits, 2 * block_bits)))
-    return Interlace(unit_bits, draw(SIZES), draw(SIZES), block_bits=block_bits,
-                     share_bits=share_bits, skew=not block_bits and draw(st.booleans()))
+    unit_bits, square_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
+    share_bits = draw(st.integers(0, min(unit_bits, 2 * square_bits)))
+    return Interlace(unit_bits, draw(SIZES), draw(SIZES), square_bits=square_bits,
+                     share_bits=share_bits, skew=not square_bits and draw(st.booleans()))
 
 
 INTERLACES = interlaces()
@@ -112,19 +112,19 @@ def test_a_skewed_unit_is_a_lattice_with_every_other_row_shifted(unit_bits, data
 @given(st.integers(0, 6), st.booleans(), st.data())
 def test_aligned_blocks_are_lattices(unit_bits, skew, data):
     interlace = Interlace(unit_bits, 32, 32, skew=skew)
-    block_bits = data.draw(st.integers(int(skew and unit_bits > 0), unit_bits))
-    block = data.draw(st.integers(0, (1 << unit_bits - block_bits) - 1))
-    across, down = (1 << bits for bits in interlace.stride_bits(block_bits))
-    assert across * down << block_bits == interlace.units
+    unit_block_bits = data.draw(st.integers(int(skew and unit_bits > 0), unit_bits))
+    block = data.draw(st.integers(0, (1 << unit_bits - unit_block_bits) - 1))
+    across, down = (1 << bits for bits in interlace.stride_bits(unit_block_bits))
+    assert across * down << unit_block_bits == interlace.units
     y, x = np.mgrid[:32, :32]
-    inside = interlace.unit(x, y) >> block_bits == block
+    inside = interlace.unit(x, y) >> unit_block_bits == block
     first_x, first_y = x[inside].min(), y[inside].min()
     assert first_x < across
     assert first_y < down
     assert (inside == ((x % across == first_x) & (y % down == first_y))).all()
 
 
-@pytest.mark.parametrize(("unit_bits", "block_bits", "share_bits", "order"), [
+@pytest.mark.parametrize(("unit_bits", "square_bits", "share_bits", "order"), [
     (2, 1, 0, "x1 y1"),
     (2, 1, 1, "y1 x0"),
     (3, 1, 2, "y1 x0 y0"),
@@ -132,16 +132,16 @@ def test_aligned_blocks_are_lattices(unit_bits, skew, data):
     (5, 2, 2, "x2 y2 y3 x0 y0"),
     (4, 5, 3, "y5 x0 y0 x1"),
 ])
-def test_bits_in_squares(unit_bits, block_bits, share_bits, order):
+def test_bits_in_squares(unit_bits, square_bits, share_bits, order):
     """Those of the processing element above the square's, those of its units from the lowest."""
-    interlace = Interlace(unit_bits, 64, 64, block_bits=block_bits, share_bits=share_bits)
+    interlace = Interlace(unit_bits, 64, 64, square_bits=square_bits, share_bits=share_bits)
     assert " ".join(f"{axis}{bit}" for axis, bit in interlace.bit_order) == order
 
 
 @settings(deadline=None)
 @given(INTERLACES)
 def test_a_share_is_a_lattice_of_squares(interlace):
-    side = 1 << interlace.block_bits
+    side = 1 << interlace.square_bits
     across, down = (1 << bits for bits in interlace.stride_bits(interlace.share_bits))
     assert across * down << interlace.share_bits == interlace.units
     y, x = np.mgrid[: interlace.height, : interlace.width]
@@ -155,7 +155,7 @@ def test_a_share_is_a_lattice_of_squares(interlace):
 
 
 def test_two_units_of_a_processing_element_alternate_along_its_rows():
-    interlace = Interlace(5, 64, 64, block_bits=3, share_bits=1)
+    interlace = Interlace(5, 64, 64, square_bits=3, share_bits=1)
     assert [interlace.unit(x, 5) for x in range(17)] == [0, 1] * 4 + [16, 17] * 4 + [4]
 
 
@@ -178,10 +178,10 @@ def test_scan_reads(interlace):
     assert len(first) < 2 * group or len(set(first.tolist())) < len(first)
 
 
-@pytest.mark.parametrize(("block_bits", "share_bits", "pitch"), [
+@pytest.mark.parametrize(("square_bits", "share_bits", "pitch"), [
     (0, 0, 128), (1, 1, 64), (3, 1, 64), (5, 1, 64), (1, 2, 64), (5, 3, 32)])
-def test_scan_reads_of_sixteen_processing_elements(block_bits, share_bits, pitch):
-    interlace = Interlace(4 + max(1, share_bits), 512, 512, block_bits=block_bits,
+def test_scan_reads_of_sixteen_processing_elements(square_bits, share_bits, pitch):
+    interlace = Interlace(4 + max(1, share_bits), 512, 512, square_bits=square_bits,
                           share_bits=share_bits)
     assert interlace.scan_reads == interlace.pitch == pitch
 
@@ -193,15 +193,15 @@ def test_skewed_units_read_half_as_often_in_a_line():
 
 
 def test_squares_are_not_skewed():
-    with pytest.raises(ValueError, match="block_bits 0"):
-        Interlace(3, 8, 8, block_bits=1, skew=True)
+    with pytest.raises(ValueError, match="square_bits 0"):
+        Interlace(3, 8, 8, square_bits=1, skew=True)
 
 
-@pytest.mark.parametrize(("unit_bits", "block_bits", "share_bits"), [
+@pytest.mark.parametrize(("unit_bits", "square_bits", "share_bits"), [
     (3, 0, 1), (3, 1, 3), (2, 2, 3), (2, 2, -1)])
-def test_squares_hold_the_units_of_a_share(unit_bits, block_bits, share_bits):
+def test_squares_hold_the_units_of_a_share(unit_bits, square_bits, share_bits):
     with pytest.raises(ValueError, match="share_bits"):
-        Interlace(unit_bits, 8, 8, block_bits=block_bits, share_bits=share_bits)
+        Interlace(unit_bits, 8, 8, square_bits=square_bits, share_bits=share_bits)
 
 
 @pytest.mark.parametrize(("units", "words", "size", "shifts"), [

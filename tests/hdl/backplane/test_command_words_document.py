@@ -54,7 +54,7 @@ def symbols(configuration):
             "d": configuration.depth_bits, "F": configuration.fraction_bits,
             "b": configuration.coordinate_bits, "X": configuration.x_bits,
             "Y": configuration.y_bits, "C": configuration.edge_column_bits,
-            "R": configuration.edge_remainder_bits, "E": configuration.edge_word_bits,
+            "R": configuration.edge_height_bits, "E": configuration.edge_word_bits,
             "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits}
 
 
@@ -211,7 +211,7 @@ def test_unit_numbers_in_squares():
     for row in rows:
         units, side, share = (int(row[name]).bit_length() - 1
                               for name in ("total units", "side", "each"))
-        interlace = Interlace(units, 64, 64, block_bits=side, share_bits=share)
+        interlace = Interlace(units, 64, 64, square_bits=side, share_bits=share)
         *_, documented = row.values()
         assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
 

@@ -134,7 +134,7 @@ def squares(cards, block, units, picture):
     configuration = small_machine(cards, width, height, words=words, maximum_units=max(units, 2),
                                   **shape)
     return configuration, interlace_for(
-        width, height, words=words, units=units, block_bits=configuration.square_bits,
+        width, height, words=words, units=units, square_bits=configuration.square_bits,
         share_bits=configuration.share_bits, skew=configuration.skew)
 
 

@@ -47,12 +47,12 @@ def expected_spans(configuration, display_list, prepared, first, end):
         pixels = covered(display_list, primitive, interlace)
         for start, size in blocks(first, end):
             across, _ = stride(interlace, size)
-            in_squares = interlace.block_bits > 0 and across > 1
-            step = 1 if interlace.block_bits else across
+            in_squares = interlace.square_bits > 0 and across > 1
+            step = 1 if interlace.square_bits else across
             runs = {}
             for x, y in sorted(pixels):
                 if start <= interlace.unit(x, y) < start + size:
-                    square = x >> interlace.block_bits if in_squares else 0
+                    square = x >> interlace.square_bits if in_squares else 0
                     runs.setdefault((y, square), []).append(x)
             for (y, _), columns in sorted(runs.items()):
                 assert all(b - a == step for a, b in pairwise(columns)), "a hole in a run"
@@ -61,7 +61,7 @@ def expected_spans(configuration, display_list, prepared, first, end):
 
 def owned_rows(interlace, start, size, top, bottom):
     """Rows top … bottom - 1 on which the block has pixels."""
-    side, down = 1 << interlace.block_bits, stride(interlace, size)[1]
+    side, down = 1 << interlace.square_bits, stride(interlace, size)[1]
     offset = interlace.pixel(start, 0)[1] // side
     return [row for row in range(top, bottom) if (row // side - offset) % down == 0]
 

@@ -56,7 +56,7 @@ def test_text():
     assert title.startswith("teapot:tessellation=3: 552 triangles at 64x64")
     assert header.split() == ["plan", "full", "saves", "because"]
     items = [re.split(r" {2,}", line)[0] for line in lines]
-    for item in ("coordinate bits", "edge column bits", "edge remainder bits", "fraction bits",
+    for item in ("coordinate bits", "edge column bits", "edge height bits", "fraction bits",
                  "stored depth bits", "interpolants", "lines", "words a memory unit", "FIFO depth"):
         assert item in items
     assert "each triangle broadcast" in result.stdout and "cycles" in result.stdout
@@ -82,7 +82,7 @@ def test_render_and_export_build_this_machine(options):
     machine = machine_of(planned)
     assert run(*words[2:], command="export").exit_code == 0
     exported = json.loads(Path("machine.json").read_text())
-    for field in ("fraction_bits", "coordinate_bits", "edge_column_bits", "edge_remainder_bits",
+    for field in ("fraction_bits", "coordinate_bits", "edge_column_bits", "edge_height_bits",
                   "edge_fraction_bits", "depth_integer_bits", "channel_integer_bits", "shading",
                   "fifo_depth", "words"):
         assert exported["configuration"][field] == getattr(machine, field), field
