@@ -81,10 +81,10 @@ def make_display_list(
     if mesh is None:
         assert isinstance(chosen, BuiltInScene)
         return _random(chosen, picture, behind, shade, camera)
-    listed = display_list_of_mesh(
+    display_list = display_list_of_mesh(
         mesh, picture, shading=shade, camera=camera, background=behind, lighting=lighting, cull=cull
     )
-    return SceneDisplayList(listed, chosen.name, _notes(mesh, listed))
+    return SceneDisplayList(display_list, chosen.name, _notes(mesh, display_list))
 
 
 def mesh_of_scene(scene: Scene) -> Mesh | None:
@@ -96,7 +96,7 @@ def mesh_of_scene(scene: Scene) -> Mesh | None:
     return None
 
 
-def _notes(mesh: Mesh, listed: DisplayList) -> tuple[str, ...]:
+def _notes(mesh: Mesh, display_list: DisplayList) -> tuple[str, ...]:
     degenerate = int(mesh.degenerate().sum())
     faces = mesh.triangles
     if degenerate == faces:
@@ -105,7 +105,7 @@ def _notes(mesh: Mesh, listed: DisplayList) -> tuple[str, ...]:
     notes = []
     if degenerate:
         notes.append(f"{degenerate} of {faces} faces are degenerate and draw nothing")
-    if listed.triangles == 0:
+    if display_list.triangles == 0:
         notes.append("no face is in view: the picture is empty")
     return tuple(notes)
 
@@ -121,7 +121,7 @@ def _random(
         raise InputError(f"{chosen.name}: camera: the triangles are made on the screen; "
                          "leave the camera out")
     arguments = chosen.arguments
-    listed = random_display_list(
+    display_list = random_display_list(
         picture,
         background,
         gouraud=shading == "gouraud",
@@ -129,7 +129,7 @@ def _random(
         size=float(arguments["size"]),
         seed=int(arguments["seed"]),
     )
-    return SceneDisplayList(listed, chosen.name)
+    return SceneDisplayList(display_list, chosen.name)
 
 
 def _replay(
@@ -140,18 +140,18 @@ def _replay(
 ) -> SceneDisplayList:
     """A display list as it is; ``InputError`` for whatever it contradicts."""
     if isinstance(chosen, HardCaseScene):
-        source, listed = chosen.name, hard_case(chosen.case).make()
+        source, display_list = chosen.name, hard_case(chosen.case).make()
     else:
-        source, listed = str(chosen.path), DisplayList.load(chosen.path)
+        source, display_list = str(chosen.path), DisplayList.load(chosen.path)
     for field, value in given.items():
-        own = getattr(listed, field)
+        own = getattr(display_list, field)
         if value is not None and value != own:
             raise InputError(f"{source}: {field}: the display list was made for {own}, not "
                              f"{value}; leave it out, or make the list again from its scene")
     if camera is not None:
         raise InputError(f"{source}: camera: a display list is already projected; leave the "
                          "camera out, or make the list again from its scene")
-    if background is not None and background != listed.background:
-        raise InputError(f"{source}: background: the display list has {listed.background}, "
+    if background is not None and background != display_list.background:
+        raise InputError(f"{source}: background: the display list has {display_list.background}, "
                          f"not {background}; leave it out, or make the list again")
-    return SceneDisplayList(listed, chosen.name)
+    return SceneDisplayList(display_list, chosen.name)

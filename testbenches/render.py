@@ -53,13 +53,13 @@ class RenderJob:
         """A guess, within a third or so, at what the simulation takes: for the progress bar."""
         configuration = self.configuration
         organisation = organisation_of(configuration)
-        listed = self.scene.display_list
-        fragments = int(depth_complexity(listed, **organisation.resolution.shifts).sum())
+        display_list = self.scene.display_list
+        fragments = int(depth_complexity(display_list, **organisation.resolution.shifts).sum())
         boot = 100 + organisation.words
         # Either memory or the broadcast of triangles is the bottleneck.
         clocks = 2.5 if configuration.memory_ports == 1 else 1.2
         draw = max(clocks * fragments / configuration.processing_elements,
-                   2.8 * listed.triangles)
+                   2.8 * display_list.triangles)
         scan = configuration.cycles_per_scan
         # The picture is shown from the scan after it is drawn, and that one is watched whole.
         return (int(boot + draw) // scan + 2) * scan
@@ -127,13 +127,13 @@ def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | N
     """Load the scene and choose the machine.  Raises ``InputError`` for whatever cannot be used."""
     began = time.perf_counter()
     options = options or RenderOptions()
-    listed, configuration = machine_for_scene(scene, options)
+    loaded, configuration = machine_for_scene(scene, options)
     return RenderJob(
-        scene=listed,
+        scene=loaded,
         configuration=configuration,
         options=options,
         command_line=command_line,
-        warnings=(*listed.notes, *resolution_warnings(configuration)),
+        warnings=(*loaded.notes, *resolution_warnings(configuration)),
         began=began,
     )
 

@@ -167,10 +167,10 @@ class PrecisionStudy:
         )  # fmt: skip
 
     def in_float32(self) -> Float32Point:
-        listed = UnquantisedScene.of_display_list(self.display_list)
+        as_stored = UnquantisedScene.of_display_list(self.display_list)
         depth_bits, limit = self.display_list.depth_bits, self.display_list.depth_limit
         return Float32Point(
-            error=self._error(float32_depth_buffer.draw(self._on_screen(listed), depth_bits)),
+            error=self._error(float32_depth_buffer.draw(self._on_screen(as_stored), depth_bits)),
             end_to_end=self._end_to_end(
                 float32_depth_buffer.draw(self._on_screen(self._scene), depth_bits), limit),
         )

@@ -21,7 +21,7 @@ from .command_group import EXIT_DIFFERENT
 
 @click.command(name="check-verilog")
 @click.argument("verilog", type=click.Path(path_type=Path), metavar="MACHINE.v")
-@click.argument("display_list", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz")
+@click.argument("list_file", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz")
 @click.option("--simulator", type=click.Choice(list(SIMULATORS)), default="verilator",
               show_default=True, help="Who simulates the Verilog.")
 @click.option("--configuration", type=click.Path(path_type=Path), metavar="MACHINE.json",
@@ -35,7 +35,7 @@ from .command_group import EXIT_DIFFERENT
 @click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE",
               help="Write every signal: .vcd from Verilator, .fst from Icarus.")
 def check_verilog_command(
-        verilog: Path, display_list: Path, simulator: str, configuration: Path | None,
+        verilog: Path, list_file: Path, simulator: str, configuration: Path | None,
         stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
     """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.
 
@@ -49,22 +49,22 @@ def check_verilog_command(
     documents is broken, 2 the input is wrong or the simulator is missing.
     """
     machine = read_configuration(configuration or verilog.with_suffix(".json"))
-    listed = DisplayList.load(display_list)
-    _check_match(machine, listed)
+    display_list = DisplayList.load(list_file)
+    _check_match(machine, display_list)
     if waveform is not None and not waveform.parent.is_dir():
         raise InputError(f"--waveform: there is no folder {waveform.parent}")
     text = _text(verilog)
     from ..cocotb_bench.engine import CocotbEngine  # loads Amaranth
 
     try:
-        simulation = simulate(machine, listed, CocotbEngine(simulator, verilog=text),
+        simulation = simulate(machine, display_list, CocotbEngine(simulator, verilog=text),
                               memory_seed=memory_seed, waveform=waveform,
                               stall_seed=None if no_stalls else stall_seed)
     except (AssertionError, TimeoutError, MachineError) as error:
         raise MachineError(f"{verilog}: {error}") from None
     except ToolMissingError as missing:
         raise InputError(str(missing)) from None
-    comparison = compare(machine, listed, simulation)
+    comparison = compare(machine, display_list, simulation)
     click.echo(_summary(simulation, comparison))
     if not comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
@@ -79,10 +79,10 @@ def _text(verilog: Path) -> str:
         raise InputError(f"{verilog}: not a text in UTF-8; is this Verilog?") from None
 
 
-def _check_match(machine: MachineConfiguration, listed: DisplayList) -> None:
+def _check_match(machine: MachineConfiguration, display_list: DisplayList) -> None:
     """``InputError`` where the machine is built for other display lists."""
-    fitted(machine, listed)
-    if machine.shading == "flat" and not listed.flat:
+    fitted(machine, display_list)
+    if machine.shading == "flat" and not display_list.flat:
         raise InputError("display list: its triangles have more than one colour, the machine is "
                          "built for flat ones: export a machine for this list")
 

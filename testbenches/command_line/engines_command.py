@@ -41,12 +41,12 @@ def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_c
     from ..speed.engine_speed import measure_engines  # loads Amaranth
 
     size: dict[str, Any] = {axis: PRESETS[name][axis] for axis in ("width", "height")}
-    listed = make_display_list(scene, **size).display_list
+    display_list = make_display_list(scene, **size).display_list
     asked = PRESETS[name] | {"fraction_bits": None} | ({"cards": cards} if cards else {})
-    machine = plan(listed, **asked).configuration
+    machine = plan(display_list, **asked).configuration
     try:
         with busy("measuring engines"):
-            speed = measure_engines(machine, listed, runs=runs, pysim_cycles=pysim_cycles)
+            speed = measure_engines(machine, display_list, runs=runs, pysim_cycles=pysim_cycles)
     except ToolMissingError as missing:
         raise InputError(f"verilator: {missing}; only pysim works here") from None
     if as_json:
@@ -56,7 +56,7 @@ def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_c
              else f"built in {speed.build_seconds:.0f} s")
     click.echo(f"machine   {machine.cards}, {machine.width}x{machine.height}, "
                f"{machine.fraction_bits} fraction bits; model {built}")
-    click.echo(f"frame     {scene}: {listed.triangles:,} triangles, {speed.cycles:,} cycles")
+    click.echo(f"frame     {scene}: {display_list.triangles:,} triangles, {speed.cycles:,} cycles")
     click.echo(f"verilator {speed.verilator:12,.0f} cycles a second, whole frame, median of {runs}")
     click.echo(f"bare loop {speed.bare_loop:12,.0f} cycles a second; ratio "
                f"{speed.verilator / speed.bare_loop:.2f}")

@@ -81,8 +81,8 @@ def export(output: Path, scene: str | Path | None = None, options: MachineOption
         if scene is None:
             configuration = machine_without_scene(options)
         else:
-            listed, configuration = machine_for_scene(scene, options)
-            notes = listed.notes
+            loaded, configuration = machine_for_scene(scene, options)
+            notes = loaded.notes
         precision = _precision(configuration, options, scene)
         text, facts = _translated(configuration, component)
         text = _header(configuration, options, scene, component, precision) + text

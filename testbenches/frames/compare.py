@@ -104,11 +104,11 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     organisation = organisation_of(configuration)
     shifts = organisation.resolution.shifts
     reference = exact.draw(display_list, shading=configuration.shading, **shifts)
-    listed = fitted(configuration, display_list)
-    needed = scene_fraction_bits(listed, **shifts)
+    fitting = fitted(configuration, display_list)
+    needed = scene_fraction_bits(fitting, **shifts)
     golden = reference
     if configuration.fraction_bits < needed:
-        golden = bit_true.draw(listed, fraction_bits=configuration.fraction_bits,
+        golden = bit_true.draw(fitting, fraction_bits=configuration.fraction_bits,
                                shading=configuration.shading, **shifts)
     expected = organisation.video(golden.color)
     depth_orphans = simulation.depth < 0

@@ -163,17 +163,17 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
     began = time.perf_counter()
     options = options or PrecisionOptions()
     step("loading the scene")
-    listed = load_scene(scene, options)
-    machine = plan(listed.display_list,
+    loaded = load_scene(scene, options)
+    machine = plan(loaded.display_list,
                    **replace(options, fraction_bits="exact").for_plan()).configuration
-    ideal = unquantised_scene(scene, listed.display_list,
+    ideal = unquantised_scene(scene, loaded.display_list,
                               "flat" if options.shading == "flat" else "gouraud")
     shifts = organisation_of(machine).resolution.shifts
-    display_list = fitted(machine, listed.display_list)
+    display_list = fitted(machine, loaded.display_list)
     step("drawing the picture before quantisation")
     study = PrecisionStudy(display_list, ideal, shading=machine.shading,
                            **shifts)
-    machines = {bits: plan(listed.display_list, **replace(options, fraction_bits=bits).for_plan()
+    machines = {bits: plan(loaded.display_list, **replace(options, fraction_bits=bits).for_plan()
                            ).configuration for bits in study.sweep()}
     points = []
     for bits in study.sweep():
@@ -182,14 +182,14 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
     step("drawing in float32")
     float32 = study.in_float32()
     format_points = []
-    own = listed.display_list
+    own = loaded.display_list
     for sub_bits, depth_bits in formats(own.sub_bits, own.depth_bits):
         step(f"drawing with {sub_bits} sub-pixel and {depth_bits} depth bits")
         format_points.append(study.at_format(sub_bits, depth_bits))
     frames = _frames(study, machines, options, step)
     placements = _placements(study, machines, options, step)
     return Precision(
-        scene=listed,
+        scene=loaded,
         machine=machine,
         extent=study.extent,
         rows=tuple(PrecisionRow(point, frames.get(point.fraction_bits),
@@ -198,7 +198,7 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
         formats=tuple(format_points),
         missing_tools=missing_tools(),
         command_line=command_line,
-        warnings=(*listed.notes, *resolution_warnings(machine)),
+        warnings=(*loaded.notes, *resolution_warnings(machine)),
         wall_seconds=time.perf_counter() - began,
     )
 
@@ -245,20 +245,21 @@ def _frames(study: PrecisionStudy, machines: dict[int, MachineConfiguration],
 
 def _frame(study: PrecisionStudy, model: MachineConfiguration, machine: MachineConfiguration,
            engine: str) -> Frame:
-    listed, bits = study.display_list, machine.fraction_bits
+    display_list, bits = study.display_list, machine.fraction_bits
 
     def simulated() -> dict[str, Any]:
-        simulation = simulate_frame(engine, model, listed, fraction_bits=bits)
+        simulation = simulate_frame(engine, model, display_list, fraction_bits=bits)
         return asdict(Frame(
             cycles=simulation.draw_cycles,
             fragments=sum(work.fragments for work in simulation.work),
-            equal=compare(machine, listed, simulation).equal,
+            equal=compare(machine, display_list, simulation).equal,
             engine=simulation.engine,
         ))
 
     return Frame(**measured_once(
-        ("frame", package_hash(), repr(model), str(bits), engine, listed.position.tobytes().hex(),
-         listed.depth.tobytes().hex(), listed.color.tobytes().hex()), simulated))
+        ("frame", package_hash(), repr(model), str(bits), engine,
+         display_list.position.tobytes().hex(), display_list.depth.tobytes().hex(),
+         display_list.color.tobytes().hex()), simulated))
 
 
 def _placements(study: PrecisionStudy, machines: dict[int, MachineConfiguration],

@@ -102,15 +102,15 @@ def _is_exact(rendering: Rendering) -> bool:
 
 
 def _display_list_facts(rendering: Rendering) -> dict[str, Any]:
-    listed = rendering.scene.display_list
+    display_list = rendering.scene.display_list
     organisation = organisation_of(rendering.configuration)
-    complexity = depth_complexity(listed, **organisation.resolution.shifts)
+    complexity = depth_complexity(display_list, **organisation.resolution.shifts)
     covered = int((complexity > 0).sum())
     return {
-        "coordinate_bits": listed.coordinate_bits,
-        "sub_bits": listed.sub_bits,
-        "colors": "one colour a triangle" if listed.flat else "a colour at each vertex",
-        "background": listed.background,
+        "coordinate_bits": display_list.coordinate_bits,
+        "sub_bits": display_list.sub_bits,
+        "colors": "one colour a triangle" if display_list.flat else "a colour at each vertex",
+        "background": display_list.background,
         "covered": covered,
         "pixels": complexity.size,
         "mean_complexity": complexity.sum() / covered if covered else 0.0,

@@ -29,7 +29,7 @@ void main() { pixel = vec4(tint, 1.0); }
 """
 
 
-def opengl_drawer(listed: DisplayList) -> tuple[Callable[[], None], str]:
+def opengl_drawer(display_list: DisplayList) -> tuple[Callable[[], None], str]:
     """A function that clears, draws the list with a depth test and reads it back, and who does it.
 
     Raises ``ImportError`` or the library's own error where there is no OpenGL.
@@ -37,15 +37,15 @@ def opengl_drawer(listed: DisplayList) -> tuple[Callable[[], None], str]:
     import moderngl
 
     context = moderngl.create_standalone_context(backend="egl")
-    width, height = listed.width, listed.height
+    width, height = display_list.width, display_list.height
     target = context.simple_framebuffer((width, height), components=4)
     target.use()
     context.enable(moderngl.DEPTH_TEST)
-    scale = 2.0 / (np.array([width, height]) * 2**listed.sub_bits)
+    scale = 2.0 / (np.array([width, height]) * 2**display_list.sub_bits)
     vertices = np.concatenate([
-        listed.position.reshape(-1, 2) * scale - 1.0,
-        listed.depth.reshape(-1, 1) / 2.0**listed.depth_bits * 2.0 - 1.0,
-        listed.color.reshape(-1, 3) / 255.0,
+        display_list.position.reshape(-1, 2) * scale - 1.0,
+        display_list.depth.reshape(-1, 1) / 2.0**display_list.depth_bits * 2.0 - 1.0,
+        display_list.color.reshape(-1, 3) / 255.0,
     ], axis=1).astype(np.float32)
     program = context.program(vertex_shader=_VERTEX, fragment_shader=_FRAGMENT)
     array = context.vertex_array(program, context.buffer(vertices.tobytes()), "position", "color")
@@ -71,13 +71,13 @@ def main(triangles: int, pixels: float, size: int, runs: int) -> None:
       python -m cardcage.testbenches.golden_benchmark
       python -m testbenches.studies.golden_benchmark --triangles 1000 --pixels 800 --runs 1
     """
-    listed = make_display_list(f"random:n={triangles},size={pixels}", width=size,
-                               height=size).display_list
-    fragments = int(exact.depth_complexity(listed).sum())
+    display_list = make_display_list(f"random:n={triangles},size={pixels}", width=size,
+                                     height=size).display_list
+    fragments = int(exact.depth_complexity(display_list).sum())
     click.echo(f"{triangles:,} triangles, {fragments:,} fragments, {size}x{size}")
-    drawers: dict[str, Callable[[], object]] = {"golden.exact": lambda: exact.draw(listed)}
+    drawers: dict[str, Callable[[], object]] = {"golden.exact": lambda: exact.draw(display_list)}
     try:
-        draw, name = opengl_drawer(listed)
+        draw, name = opengl_drawer(display_list)
         drawers[name.partition(" (")[0]] = draw
     except Exception as error:  # no library, no driver: the drivers' errors have no common type
         click.echo(f"no OpenGL to compare with: {error}; pip install 'cardcage[opengl]'")

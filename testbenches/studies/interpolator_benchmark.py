@@ -101,16 +101,17 @@ def main(size: tuple[int, int], depth_bits: int, count: int, no_cells: bool) -> 
         raise click.UsageError("cells need yosys: pip install 'cardcage[fpga]', or --no-cells")
     width, height = size
     scene = f"random:n=20,size={max(2, (width + height) // 6)},seed=1"
-    listed = make_display_list(scene, width=width, height=height,
-                               depth_bits=depth_bits).display_list
-    runs = Runs.of(listed, count)
-    double_area = width * height << 2 * listed.sub_bits
-    click.echo(f"{width}x{height}, {listed.sub_bits} sub-pixel bits, {depth_bits} depth bits; "
-               f"{count} spans, {len(runs.depth):,} values of each form, equal to the exact ones")
+    display_list = make_display_list(scene, width=width, height=height,
+                                     depth_bits=depth_bits).display_list
+    runs = Runs.of(display_list, count)
+    double_area = width * height << 2 * display_list.sub_bits
+    click.echo(f"{width}x{height}, {display_list.sub_bits} sub-pixel bits, "
+               f"{depth_bits} depth bits; {count} spans, {len(runs.depth):,} values of each form, "
+               "equal to the exact ones")
     click.echo(f"{'':28}{'clocks a value':>15}{'a span besides':>16}"
                + "".join(f"{name:>8}" for name in CELLS if not no_cells))
     console = Console(stderr=True)
-    for form in forms(listed, runs, units=_UNITS, double_area=double_area):
+    for form in forms(display_list, runs, units=_UNITS, double_area=double_area):
         busy: AbstractContextManager[object] = (
             console.status(form.name) if console.is_terminal else nullcontext())
         with busy:

@@ -100,16 +100,16 @@ class Runs:
     depth: list[int]
 
     @classmethod
-    def of(cls, listed: DisplayList, count: int, longest: int = 12) -> Runs:
+    def of(cls, display_list: DisplayList, count: int, longest: int = 12) -> Runs:
         """``count`` spans of the list, evenly chosen; of each at most ``longest`` pixels."""
-        triangles = Triangles.of(listed, Grid.of(listed))
+        triangles = Triangles.of(display_list, Grid.of(display_list))
         every = next(spans(triangles, row_limit=1 << 20))
         chosen = np.linspace(0, len(every) - 1, count).astype(int)
         stride_bits = np.arange(count) % 3
         pixels = np.minimum(-(-every.length[chosen] >> stride_bits), longest)
         primitive, x, y = (part[chosen].tolist() for part in (
             triangles.primitive[every.triangle], every.first, every.row))
-        known = exact.fragments(listed)
+        known = exact.fragments(display_list)
         depth = dict(zip(zip(known.primitive.tolist(), known.x.tolist(), known.y.tolist(),
                              strict=True), known.depth.tolist(), strict=True))
         runs = zip(primitive, x, y, pixels.tolist(), stride_bits.tolist(), strict=True)
@@ -127,12 +127,14 @@ class Form:
     spans: list[dict[str, Any]]
 
 
-def _remainder_planes(listed: DisplayList, primitive: int, left: int, top: int) -> dict[str, Any]:
+def _remainder_planes(display_list: DisplayList, primitive: int, left: int, top: int
+                      ) -> dict[str, Any]:
     """Start at the centre of (left, top) and increments of a triangle, as multiples of 1 / D."""
-    corners, values = listed.position[primitive].tolist(), listed.depth[primitive].tolist()
+    corners = display_list.position[primitive].tolist()
+    values = display_list.depth[primitive].tolist()
     (x0, y0), (x1, y1), (x2, y2) = corners
     area = abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
-    unit = 1 << listed.sub_bits
+    unit = 1 << display_list.sub_bits
 
     def multiple(right: int, down: int) -> Fraction:
         return area * biased_value(corners, values, (left + right) * unit + unit // 2,
@@ -140,23 +142,23 @@ def _remainder_planes(listed: DisplayList, primitive: int, left: int, top: int) 
 
     start = multiple(0, 0)
     return {"denominator": area, **{
-        name: {"quotient": floor(number) // area % (1 << listed.depth_bits),
+        name: {"quotient": floor(number) // area % (1 << display_list.depth_bits),
                "remainder": floor(number) % area}
         for name, number in (("start", start), ("step_x", multiple(1, 0) - start),
                              ("step_y", multiple(0, 1) - start))}}
 
 
-def forms(listed: DisplayList, runs: Runs, *, units: int, double_area: int) -> list[Form]:
+def forms(display_list: DisplayList, runs: Runs, *, units: int, double_area: int) -> list[Form]:
     """All of them, exact for every triangle of the screen up to ``double_area``.
 
     ``units`` of memory decide how long a stride may be.
     """
-    fraction_bits = exact_fraction_bits(double_area, listed.width + listed.height - 2)
+    fraction_bits = exact_fraction_bits(double_area, display_list.width + display_list.height - 2)
     configuration = MachineConfiguration(
-        cards="P" + "M" * units, width=listed.width, height=listed.height,
-        sub_bits=listed.sub_bits, depth_bits=listed.depth_bits, fraction_bits=fraction_bits,
-        shading="flat")
-    prepared = prepare(listed, fraction_bits=fraction_bits, shading="flat")
+        cards="P" + "M" * units, width=display_list.width, height=display_list.height,
+        sub_bits=display_list.sub_bits, depth_bits=display_list.depth_bits,
+        fraction_bits=fraction_bits, shading="flat")
+    prepared = prepare(display_list, fraction_bits=fraction_bits, shading="flat")
     row_of = {primitive: row for row, primitive in enumerate(prepared.primitive.tolist())}
     fixed_spans, remainder_spans = [], []
     for primitive, x, y, more, stride_bits in zip(runs.primitive, runs.x, runs.y, runs.more,
@@ -170,11 +172,11 @@ def forms(listed: DisplayList, runs: Runs, *, units: int, double_area: int) -> l
                 for part in ("start", "step_x", "step_y")}})
         remainder_spans.append({
             "x_steps": x - left, "y_steps": y - top, "more": more, "x_stride_bits": stride_bits,
-            **_remainder_planes(listed, primitive, left, top)})
+            **_remainder_planes(display_list, primitive, left, top)})
     return [
         Form(f"fixed point, F = {fraction_bits}",
              lambda: FixedPointInterpolator(configuration=configuration), fixed_spans),
-        *(Form(name, partial(component, value_bits=listed.depth_bits,
+        *(Form(name, partial(component, value_bits=display_list.depth_bits,
                              area_bits=double_area.bit_length(),
                              steps_bits=max(configuration.x_bits, configuration.y_bits),
                              stride_bits_bits=units.bit_length().bit_length()), remainder_spans)

@@ -12,10 +12,10 @@ from ....golden.scene_argument import HardCaseScene
 
 
 def _listed() -> list[dict[str, str | int | list[str]]]:
-    listed = []
+    rows = []
     for case in HARD_CASES.values():
         display_list = case.make()
-        listed.append({
+        rows.append({
             "name": HardCaseScene(case.name).name,
             "mistake": case.mistake,
             "width": display_list.width,
@@ -23,7 +23,7 @@ def _listed() -> list[dict[str, str | int | list[str]]]:
             "triangles": display_list.triangles,
             "expected": [expectation.says for expectation in case.expectations],
         })
-    return listed
+    return rows
 
 
 def hard_cases_json() -> str:

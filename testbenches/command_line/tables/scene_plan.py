@@ -55,21 +55,21 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
     options = options or MachineOptions()
     if cycles is not None and options.cards is not None:
         raise InputError("--cycles: chooses the cards itself; leave out --cards")
-    listed = load_scene(scene, options)
+    loaded = load_scene(scene, options)
     if cycles is not None:
         settled = options.machine()
-        options = replace(options, cards=cards_for_cycles(listed.display_list, cycles, **{
+        options = replace(options, cards=cards_for_cycles(loaded.display_list, cycles, **{
             name: settled[name] for name in ("words", "clocks_per_pixel", "memory_ports", "block")
             if name in settled}))
-    planned = plan(listed.display_list, **options.for_plan())
+    planned = plan(loaded.display_list, **options.for_plan())
     return ScenePlan(
-        scene=listed,
+        scene=loaded,
         plan=planned,
-        estimate=estimate_cycles(planned.configuration, listed.display_list),
+        estimate=estimate_cycles(planned.configuration, loaded.display_list),
         budget=cycles,
         cells=_cells(planned) if count else None,
         command=shlex.join(["cardcage", "render", str(scene), *option_words(options)]),
-        warnings=(*listed.notes, *resolution_warnings(planned.configuration)),
+        warnings=(*loaded.notes, *resolution_warnings(planned.configuration)),
     )
 
 
