@@ -10,6 +10,11 @@ from pathlib import Path
 import pytest
 from amaranth.sim import Simulator
 
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.testbenches.export.export_files import export
+from cardcage.testbenches.machine_options import MachineOptions
+from cardcage.testbenches.render import RenderOptions, prepare_render
+
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -58,6 +63,26 @@ def test_the_python_example_builds_a_machine():
     exec(example, names)
     assert len(names["machine"].memory_units) == 8
     Simulator(names["machine"])
+
+
+def test_the_python_example_is_the_machine_of_the_command_it_names():
+    [example] = blocks("python")
+    names = {}
+    exec(example, names)
+    [line] = re.findall(r"^`(cardcage render teapot [^`]*)` simulates:", README, re.MULTILINE)
+    _, _, scene, *words = shlex.split(line)
+    options = dict(zip(words[::2], words[1::2], strict=True))
+    assert set(options) == {"--cards", "--size"}
+    width, height = map(int, options["--size"].split("x"))
+    job = prepare_render(scene, RenderOptions(cards=options["--cards"], size=(width, height)))
+    assert job.configuration == names["planned"].configuration
+
+
+def test_a_machine_without_a_scene_is_the_one_that_export_writes(tmp_path):
+    options = MachineOptions(cards="PM", size=(16, 12), clocks_per_pixel=3)
+    exported = export(tmp_path / "machine.v", options=options, component="id_increment")
+    assert exported.configuration == MachineConfiguration(
+        cards="PM", width=16, height=12, clocks_per_pixel=3)
 
 
 def test_files_it_names_exist():

@@ -1,6 +1,6 @@
 """The picture contract once more, in fractions, one pixel at a time.
 
-Nothing here is shared with ``coverage``, ``exact`` or ``setup``: plain loops,
+Nothing here is shared with ``coverage``, ``exact`` or ``triangle_setup``: plain loops,
 Python integers and ``Fraction``, slow and easy to believe.
 """
 

@@ -213,7 +213,8 @@ def with_sub_bits(display_list: DisplayList, sub_bits: int) -> DisplayList:
 
 
 def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> DisplayList:
-    """``display_list`` in the formats of a machine, for ``setup.prepare`` and ``bit_true.draw``.
+    """``display_list`` in the formats of a machine, for ``triangle_setup.prepare`` and
+    ``bit_true.draw``.
 
     Raises ``InputError``, naming the field and both numbers, for a list whose picture that
     machine could not draw: other sizes or depths, or words too narrow for a triangle.  Fewer

@@ -1,10 +1,10 @@
 """The datapath's picture, bit for bit, at a given number of fraction bits.
 
-Coverage is exact at any precision.  Depth and colour are what ``setup``
+Coverage is exact at any precision.  Depth and colour are what ``triangle_setup``
 computes and a machine carries: start and increments rounded at 2**-F, summed
 modulo a power of two, floored, read as signed, saturated; where errors are
 small (``fixed_point.stays_in_range``) the last two change nothing.  With enough
-fraction bits (``setup.scene_fraction_bits``) the picture equals ``exact``'s;
+fraction bits (``triangle_setup.scene_fraction_bits``) the picture equals ``exact``'s;
 with fewer, depth and colour err by at most ``fixed_point.error_bound`` before the floor.
 """
 

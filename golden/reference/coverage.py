@@ -7,7 +7,7 @@ or left edge.  Everything is in integers, so it is exact.  The steps are
 
 and none of them loops over triangles, rows or pixels; large lists go through in
 chunks, so the working set stays bounded.  This is written independently of
-``triangle_setup``, which multiplies edges' steps by rows as the hardware does.
+``triangle_setup``, whose edges a machine is told as a start and a step a row.
 """
 
 from __future__ import annotations

@@ -70,7 +70,8 @@ def plane_layout(bits: int) -> Layout:
 
 
 def edge_layout(configuration: MachineConfiguration) -> Layout:
-    """An edge's columns, row by row: in fixed point, exact on every row (``setup.carry_edges``)."""
+    """An edge's columns, row by row: in fixed point, exact on every row.  Its numbers are what
+    ``golden.reference.triangle_setup.carry_edges`` gives."""
     return dict.fromkeys(("start", "step"), configuration.edge_word_bits)
 
 
