@@ -57,18 +57,12 @@ def test_the_slow_commands_parse(line):
             assert word in shown
 
 
-def test_the_python_example_builds_a_machine():
+def test_the_python_example_builds_the_machine_of_the_command_beside_it():
     [example] = blocks("python")
     names = {}
     exec(example, names)
     assert len(names["machine"].memory_units) == 8
     Simulator(names["machine"])
-
-
-def test_the_python_example_is_the_machine_of_the_command_it_names():
-    [example] = blocks("python")
-    names = {}
-    exec(example, names)
     [line] = re.findall(r"^`(cardcage render teapot [^`]*)` simulates:", README, re.MULTILINE)
     _, _, scene, *words = shlex.split(line)
     options = dict(zip(words[::2], words[1::2], strict=True))
