@@ -5,9 +5,9 @@ import re
 import pytest
 from verilog_tools import icarus, verilator_lint, yosys
 
-from cardcage.hdl.backplane.connectors import memory_bus_bits
 from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.hdl.backplane.connectors import memory_bus_bits
 from cardcage.hdl.backplane.words import planes_layout, span_layout, walked_outline_layout
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.rasteriser.interpolator import fragment_layout
