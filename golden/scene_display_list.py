@@ -64,6 +64,11 @@ def make_display_list(
     ``lighting`` and ``cull`` do not touch it.  Raises ``InputError`` for a scene,
     file or number that cannot be used, and for a size or camera that such a list
     contradicts.
+
+    >>> import cardcage
+    >>> teapot = cardcage.make_display_list("teapot:tessellation=2", width=64, height=64)
+    >>> teapot.name, teapot.display_list.triangles
+    ('teapot:tessellation=2', 240)
     """
     chosen = parse_scene(scene)
     if isinstance(chosen, DisplayListScene | HardCaseScene):

@@ -47,6 +47,13 @@ class Machine(wiring.Component):
     activity: Out(activity_layout)
         What each processing element does in this clock; only where the configuration says
         ``observe``.
+
+    >>> import amaranth.sim, cardcage
+    >>> configuration = cardcage.MachineConfiguration(cards="PMM", width=16, height=16)
+    >>> machine = cardcage.Machine(configuration=configuration)
+    >>> len(machine.processing_elements), len(machine.memory_units)
+    (1, 2)
+    >>> simulator = amaranth.sim.Simulator(machine)
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -101,7 +101,7 @@ class RenderJob:
 
     def _simulated(self, recording: Path | None, progress: Progress | None) -> Simulation:
         observed = replace(self.configuration, observe=True)  # costs no clock
-        return simulate_frame(self.options.engine, observed, self.scene.display_list,
+        return simulate_frame(observed, self.scene.display_list, engine=self.options.engine,
                               memory_seed=self.options.random_memory, waveform=recording,
                               progress=progress)
 
@@ -138,13 +138,26 @@ def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | N
     )
 
 
-def render(scene: str | Path = DEFAULT_SCENE, *, out: Path | None = None,
-           waveform: Path | None = None, progress: Progress | None = None,
+def render(scene: str | Path = DEFAULT_SCENE, *, out: str | Path | None = None,
+           waveform: str | Path | None = None, progress: Progress | None = None,
            **options: Any) -> Rendering:
-    """Draw ``scene`` and judge the frame; ``options`` are the fields of ``RenderOptions``.
+    """Draw a scene on a simulated machine and compare every pixel with the golden model.
 
-    Writes nothing unless ``out`` or ``waveform`` is given.  Raises as ``prepare_render`` and
-    ``RenderJob.run``; a frame that differs is no exception: see ``Rendering.comparison``.
+    ``scene``     a mesh file, a saved display list (``.npz``), ``hard:NAME`` or a built-in scene
+    ``out``       folder of the report; None writes none
+    ``waveform``  a VCD file of every signal; None writes none
+    ``progress``  is called now and then with the cycles and the responses so far
+    ``options``   the fields of ``RenderOptions`` and ``MachineOptions``: ``cards``, ``size``,
+                  ``engine`` and the others that the command line has
+
+    Raises ``InputError`` for whatever cannot be used or written, ``MachineError`` where the
+    machine delivers no frame.  A frame that differs is no exception: see ``comparison``.
+
+    >>> import cardcage
+    >>> rendering = cardcage.render("tetra:depth=0", cards="PM", size=(16, 16), engine="pysim")
+    >>> rendering.comparison.equal, rendering.comparison.pixels_compared
+    (True, 256)
     """
     job = prepare_render(scene, RenderOptions(**options))
-    return job.run(out, waveform, progress)
+    return job.run(None if out is None else Path(out),
+                   None if waveform is None else Path(waveform), progress)

@@ -65,6 +65,12 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     background's depth is part of the picture.  Planned is for the resolution that the
     memory holds: with units pulled out, ``scene_needs.fitted`` decides whether the list
     still fits.  Raises ``InputError``.
+
+    >>> import cardcage
+    >>> scene = cardcage.make_display_list("tetra:depth=0", width=16, height=16)
+    >>> planned = cardcage.plan(scene.display_list, cards="PM")
+    >>> planned.configuration.shading, len(planned.lines)
+    ('flat', 13)
     """
     check_max_error(max_error)
     if fraction_bits is not None and max_error:

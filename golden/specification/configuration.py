@@ -68,6 +68,11 @@ class MachineConfiguration:
     ``channel_integer_bits`` of a carried colour channel, likewise
 
     Raises ``InputError`` where a number is out of range or the cards do not make a machine.
+
+    >>> import cardcage
+    >>> machine = cardcage.MachineConfiguration(cards="2x(PMM)", width=64, height=64)
+    >>> machine.cards, machine.units, machine.words
+    ('PMMPMM', 4, 1024)
     """
 
     cards: str

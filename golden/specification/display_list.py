@@ -42,6 +42,16 @@ class DisplayList:
     The index of a triangle is its primitive number: on equal depth the lower
     one keeps the pixel.  Raises ``InputError`` where an array has the wrong
     dtype, shape or range.
+
+    >>> import cardcage, numpy
+    >>> one = cardcage.DisplayList(
+    ...     width=16, height=16,
+    ...     position=numpy.array([[[0, 0], [4096, 0], [0, 4096]]], numpy.int32),
+    ...     depth=numpy.array([[0, 100, 100]], numpy.int64),
+    ...     color=numpy.full((1, 3, 3), 200, numpy.uint8))
+    >>> one.save("one.npz")
+    >>> cardcage.DisplayList.load("one.npz").triangles
+    1
     """
 
     width: int

@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from ..export.export_files import COMPONENT_NAMES, export, export_summary
-from ..machine_options import MachineOptions
 from .command_group import warn
 from .command_options import machine_options
 
@@ -35,7 +34,7 @@ def export_command(scene: str | None, component: str | None, output: Path,
       cardcage export --preset paper --shading flat -o paper.v
       cardcage export --component memory_unit -o memory_unit.v
     """
-    exported = export(output, scene, MachineOptions(**options), component)
+    exported = export(output, scene, component=component, **options)
     for warning in exported.warnings:
         warn(warning)
     click.echo(export_summary(exported))

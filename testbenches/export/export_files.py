@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
@@ -60,15 +61,30 @@ class Export:
     warnings: tuple[str, ...]
 
 
-def export(output: Path, scene: str | Path | None = None, options: MachineOptions | None = None,
-           component: str | None = None) -> Export:
-    """Write ``output`` (a ``.v`` file) and beside it the same name with ``.json`` and ``.vlt``.
+def export(output: str | Path, scene: str | Path | None = None, *, component: str | None = None,
+           **options: Any) -> Export:
+    """Write a machine as Verilog, its description as JSON and Verilator's lint waivers.
 
-    ``component`` is one of ``COMPONENT_NAMES``, or None for the whole machine.  The same arguments
-    write the same bytes.  Raises ``InputError`` for whatever cannot be used or written; then
-    nothing has changed.
+    ``output``     the Verilog, a ``.v`` file; the others lie beside it: ``.json`` and ``.vlt``
+    ``scene``      its numbers are as wide as this scene needs; None: every triangle on the screen
+                   is drawn exactly
+    ``component``  one of ``COMPONENT_NAMES`` alone; None: the whole machine
+    ``options``    the fields of ``MachineOptions``: ``cards``, ``size`` and the others that the
+                   command line has
+
+    The same arguments write the same bytes.  Raises ``InputError`` for whatever cannot be used or
+    written; then nothing has changed.
+
+    >>> import cardcage
+    >>> exported = cardcage.export("machine.v", "tetra:depth=0", cards="PM", size=(16, 16))
+    >>> exported.top, exported.verilog.name, exported.description.name
+    ('machine', 'machine.v', 'machine.json')
     """
-    options = options or MachineOptions()
+    return _export(Path(output), scene, MachineOptions(**options), component)
+
+
+def _export(output: Path, scene: str | Path | None, options: MachineOptions,
+            component: str | None) -> Export:
     if output.suffix != ".v":
         raise InputError(f"-o: {output} does not end in .v, as a Verilog file should")
     if component is not None and component not in COMPONENT_NAMES:

@@ -99,7 +99,14 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     """Judge ``simulation``, a frame of ``display_list`` drawn by a machine of ``configuration``.
 
     Colour is compared as it left the video pins, at the highest resolution; depth as it was read
-    back, at the machine's.
+    back, at the machine's.  Raises ``InputError`` for a list that is too wide for the machine.
+
+    >>> import cardcage
+    >>> machine = cardcage.MachineConfiguration(cards="PM", width=16, height=16, fraction_bits=28)
+    >>> scene = cardcage.make_display_list("tetra:depth=0", width=16, height=16)
+    >>> simulation = cardcage.simulate_frame(machine, scene.display_list, engine="pysim")
+    >>> cardcage.compare(machine, scene.display_list, simulation).equal
+    True
     """
     organisation = organisation_of(configuration)
     shifts = organisation.resolution.shifts

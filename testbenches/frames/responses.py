@@ -16,8 +16,13 @@ from ..engines.engine import EngineRun, Scan
 
 
 class MachineError(RuntimeError):
-    """The machine answered something it should not have."""
+    """The machine answered something it should not have, or nothing.
 
+    >>> import cardcage
+    >>> raise cardcage.MachineError("the machine hangs")
+    Traceback (most recent call last):
+    cardcage.testbenches.frames.responses.MachineError: the machine hangs
+    """
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
-from ..engines.choose_engine import make_engine
+from ..engines.choose_engine import AUTO, make_engine
 from ..engines.engine import Engine, Progress
 from ..engines.verilator_tool import ToolMissingError
 from .frame_job import frame_job
@@ -35,12 +35,23 @@ def simulate(
     return interpret(configuration, engine.run(job, progress))
 
 
-def simulate_frame(engine: str, configuration: MachineConfiguration, display_list: DisplayList,
-                   **options: Any) -> Simulation:
-    """``simulate`` with the engine of that name, for a command line.
+def simulate_frame(configuration: MachineConfiguration, display_list: DisplayList, *,
+                   engine: str = AUTO, **options: Any) -> Simulation:
+    """One frame of ``display_list`` on a machine, simulated by the engine of that name.
 
-    Raises ``InputError`` where the engine cannot run here, ``MachineError`` where the machine
-    fails.
+    ``engine``   ``verilator``, ``pysim``, or ``auto`` for the fastest that works here
+    ``options``  those of ``simulate``, in this module
+
+    The result has the picture as it left the video pins, the depths as they were read back, and
+    what they cost; ``compare`` judges it.  Raises ``InputError`` for a list that is too wide for
+    the machine and an engine that cannot run here, ``MachineError`` where the machine fails.
+
+    >>> import cardcage
+    >>> machine = cardcage.MachineConfiguration(cards="PM", width=16, height=16, fraction_bits=28)
+    >>> scene = cardcage.make_display_list("tetra:depth=0", width=16, height=16)
+    >>> simulation = cardcage.simulate_frame(machine, scene.display_list, engine="pysim")
+    >>> simulation.video.shape, simulation.total
+    ((16, 16, 3), 1)
     """
     try:
         return simulate(configuration, display_list, make_engine(engine), **options)

@@ -248,7 +248,7 @@ def _frame(study: PrecisionStudy, model: MachineConfiguration, machine: MachineC
     display_list, bits = study.display_list, machine.fraction_bits
 
     def simulated() -> dict[str, Any]:
-        simulation = simulate_frame(engine, model, display_list, fraction_bits=bits)
+        simulation = simulate_frame(model, display_list, engine=engine, fraction_bits=bits)
         return asdict(Frame(
             cycles=simulation.draw_cycles,
             fragments=sum(work.fragments for work in simulation.work),
