@@ -53,7 +53,7 @@ def main(size: tuple[int, int], sub_bits: int, depth_bits: int, chosen: tuple[in
 
     \b
     Examples:
-      python -m cardcage.testbenches.bound_search
+      python -m testbenches.studies.bound_search
       python -m testbenches.studies.bound_search --size 640x480 --fraction-bits 9 --seeds 100
     """
     def worst(interpolant: Interpolant, fraction_bits: int) -> WorstCase:

