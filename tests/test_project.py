@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("golden", "hdl", "package", "testbenches", "tests")
 
@@ -22,6 +24,25 @@ def test_ruff_has_nothing_to_say():
 def test_the_golden_models_type_check(tmp_path):
     done = run("mypy", "--cache-dir", str(tmp_path))
     assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize(("folder", "words", "found"), [
+    ("tests/hdl/video", [], True),
+    ("tests", ["golden/planning"], True),
+    (".", ["tests/golden/specification"], True),
+    (".", ["hdl"], False),
+    ("hdl", [], False),
+    ("golden/specification", [], False),
+    ("testbenches", [], False),
+    ("tests/library", [], False),
+])
+def test_pytest_collects_from_anywhere(folder, words, found):
+    """Tests where there are some, and never a source that looks like one."""
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:cacheprovider", *words],
+        cwd=ROOT / folder, capture_output=True, text=True, timeout=100)
+    wanted = pytest.ExitCode.OK if found else pytest.ExitCode.NO_TESTS_COLLECTED
+    assert done.returncode == wanted, done.stdout[-1000:] + done.stderr
 
 
 def test_hardware_uses_the_current_language():
