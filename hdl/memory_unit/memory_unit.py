@@ -54,8 +54,9 @@ class MemoryUnit(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         kind = {1: OnePortMemory, 2: TwoPortMemory}[configuration.memory_ports]
-        self.memory = kind(words=configuration.words, depth_bits=configuration.depth_bits,
-                           tag_bits=configuration.tag_bits)
+        self.memory: OnePortMemory | TwoPortMemory = kind(
+            words=configuration.words, depth_bits=configuration.depth_bits,
+            tag_bits=configuration.tag_bits)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),

@@ -49,7 +49,7 @@ class CocotbEngine:
 
     def run(self, job: Job, progress: Progress | None = None) -> EngineRun:
         waves = job.waveform is not None
-        if waves and job.waveform.suffix != self._simulator.wave_suffix:
+        if job.waveform is not None and job.waveform.suffix != self._simulator.wave_suffix:
             raise InputError(f"{job.waveform}: {self._simulator.name} writes waveforms as "
                              f"{self._simulator.wave_suffix}")
         began = time.perf_counter()

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import cocotb
 from cocotb.clock import Clock
@@ -42,7 +42,7 @@ _OPCODE = (1 << commands.OPCODE_BITS) - 1
 
 
 @cocotb.test()
-async def frame(dut) -> None:
+async def frame(dut: Any) -> None:
     """The job's commands pass, everything owed comes back, and no rule is broken on the way."""
     folder = Path(os.environ[FOLDER_VARIABLE])
     bench = _Bench(dut, read_job(folder), folder)
@@ -62,7 +62,7 @@ async def frame(dut) -> None:
     report("done")
 
 
-def _level(handle) -> int | None:
+def _level(handle: Any) -> int | None:
     """A port's value; None where any of its bits is X or Z."""
     value = handle.value
     return int(value) if value.is_resolvable else None
@@ -71,7 +71,7 @@ def _level(handle) -> int | None:
 class _Bench:
     """One simulation."""
 
-    def __init__(self, dut, job: Job, folder: Path) -> None:
+    def __init__(self, dut: Any, job: Job, folder: Path) -> None:
         self.dut, self.job, self.folder = dut, job, folder
         self.monitor = VideoMonitor(job.configuration)
         self.responses: list[tuple[int, int, int]] = []
@@ -163,6 +163,7 @@ class _Bench:
         else:
             self._send.wait()
         if given:
+            assert word is not None  # as the check of the stream found
             value, kind = divmod(word, 1 << commands.RESPONSE_KIND_BITS)
             self._respond(kind, value)
             self._receive.go()
@@ -180,6 +181,7 @@ class _Bench:
     @property
     def _clear_from(self) -> int:
         """The cycle from which no pixel on the pins was read before the pictures were black."""
+        assert self._booted is not None
         held = _PIXELS_HELD * self.job.configuration.clocks_per_pixel
         return self._booted + _PIN_LATENCY + held
 
@@ -188,12 +190,14 @@ class _Bench:
         dut = self.dut
         pixel = _level(dut.pins__pixel)
         channels = [_level(pin) for pin in (dut.pins__red, dut.pins__green, dut.pins__blue)]
-        color = None if None in channels else sum(
-            level << 8 * place for place, level in enumerate(channels))
+        known = [level for level in channels if level is not None]
+        color = None if len(known) < len(channels) else sum(
+            level << 8 * place for place, level in enumerate(known))
         pins = Pins(_level(dut.pins__active), _level(dut.pins__horizontal_sync),
                     _level(dut.pins__vertical_sync), color)
         self._pins.sample(self.cycle, pixel, pins)
         if pixel:
+            assert pins.active is not None and pins.vertical_sync is not None  # so says the check
             if color is None:
                 if (self._owned.all() and self._booted is not None
                         and self.cycle >= self._clear_from):

@@ -23,7 +23,7 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
     ``ended`` all scans are one picture, before the first ``ended`` black; in between, each is
     either the picture before or the one after.
     """
-    pictures: list[np.ndarray | None] = []
+    pictures: list[NDArray[np.uint8] | None] = []
     begins = [clear, *shown]
     for number, begin in enumerate(begins):
         end = ended[number] if number < len(ended) else None
@@ -33,6 +33,7 @@ def check_scans(scans: Sequence[Scan], clear: int, ended: Sequence[int],
         if number == 0 and scans:
             picture = np.zeros_like(scans[0].picture)
         for scan in stable:
+            assert picture is not None
             if not np.array_equal(scan.picture, picture):
                 raise ProtocolError(_torn(scan, picture, f"picture {number}"))
         pictures.append(picture)
@@ -60,6 +61,6 @@ def masked(scans: Sequence[Scan], owned: NDArray[np.bool_]) -> list[Scan]:
     return [replace(scan, picture=scan.picture * owned[..., np.newaxis]) for scan in scans]
 
 
-def _torn(scan: Scan, expected: np.ndarray, name: str) -> str:
+def _torn(scan: Scan, expected: NDArray[np.uint8], name: str) -> str:
     y, x = np.argwhere((scan.picture != expected).any(axis=-1))[0]
     return f"cycle {scan.cycle}: this scan is not whole {name}: pixel ({x}, {y}) differs"

@@ -54,7 +54,7 @@ def boards_command(names: tuple[str, ...], cards: str, size: tuple[int, int], se
         file = json_file and outputs.enter_context(atomic_file(json_file, "--json"))
         with step_bar(len(parts) * (1 + seeds)) as step:
             placements = measure(parts, range(1, seeds + 1), step)
-        if file:
+        if file and json_file:
             facts = board_facts(parts, placements)
             with output_errors(json_file, "--json"):
                 file.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")

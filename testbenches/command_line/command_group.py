@@ -24,17 +24,18 @@ class OneLineErrors(click.Command):
     the command line as it was typed.
     """
 
-    def main(self, args: Sequence[str] | None = None, *, standalone_mode: bool = True,
-             **extra: Any) -> Any:
+    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None,
+             complete_var: str | None = None, standalone_mode: bool = True, **extra: Any) -> Any:
         """Run a command; ends the program unless ``standalone_mode`` is off."""
         words = list(sys.argv[1:] if args is None else args)
         extra.setdefault("obj", shlex.join(["cardcage", *words]))
         if not standalone_mode:
-            return super().main(words, standalone_mode=False, **extra)
+            return super().main(words, prog_name, complete_var, standalone_mode=False, **extra)
         try:
             with interruptible():
                 # Without standalone mode click hands back what --help or ctx.exit() asked for.
-                sys.exit(super().main(words, standalone_mode=False, **extra))
+                sys.exit(super().main(words, prog_name, complete_var, standalone_mode=False,
+                                      **extra))
         except Interrupted as interruption:
             sys.exit(interruption.status)
         except click.ClickException as error:

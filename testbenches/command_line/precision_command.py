@@ -38,7 +38,7 @@ from .progress import step_bar
 @click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
               show_default=True, metavar="DIR", help="Folder of the report.")
 @click.pass_obj
-def precision_command(command_line: str, scene: str, out: Path, **options: Any) -> None:
+def precision_command(command_line: str, /, scene: str, out: Path, **options: Any) -> None:
     """Show what SCENE's machine costs and gains as its numbers get coarser.
 
     For each number of fraction bits: errors of depth and colour against the exact picture and

@@ -30,7 +30,7 @@ PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
 @click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
               show_default=True, metavar="DIR", help="Folder of the report.")
 @click.pass_obj
-def render_command(command_line: str, scene: str, waveform: Path | None, out: Path,
+def render_command(command_line: str, /, scene: str, waveform: Path | None, out: Path,
                    **options: Any) -> None:
     """Draw SCENE on a simulated machine and compare every pixel with the golden model.
 

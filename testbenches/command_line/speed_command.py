@@ -60,7 +60,7 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png",
               help="Also draw the speed along --fifo, --block or --elements.")
 @click.pass_obj
-def bench_command(command_line: str, cases: tuple[str, ...], orders: tuple[Any, ...] | None,
+def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[Any, ...] | None,
                   everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
                   plot: Path | None, **axes: Any) -> None:
     """Measure clocks per triangle and fragment on chosen machines, beside the peers' figures.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +88,8 @@ def activity_record(begin: int, samples: Sequence[int], elements: int) -> Activi
     for element in range(elements):
         kind = np.array([sample >> ACTIVITY_BITS * element & KINDS - 1 for sample in samples],
                         np.int64)
-        np.add.at(counts, (bucket, element, kind), 1)
+        places: Any = (bucket, element, kind)  # numpy's types know of no index but an array
+        np.add.at(counts, places, 1)
     return ActivityRecord(begin, clocks, bucket_clocks, counts)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import time
 from contextlib import nullcontext
+from typing import Any
 
 import numpy as np
 from amaranth.hdl import Cat, Const, Shape, Value
@@ -59,7 +60,7 @@ class _Run:
                          accepted=np.array(self.accepted, np.int64),
                          activity=self.watch.records if self.watch else ())
 
-    def _scramble(self, ctx) -> None:
+    def _scramble(self, ctx: Any) -> None:
         """Every memory word random, as after power-on."""
         source = random.Random(self.job.memory_seed)
         for storage in (storage for unit in self.machine.memory_units
@@ -69,7 +70,7 @@ class _Run:
             for address in range(words.depth):
                 ctx.set(words[address], words.shape.from_bits(source.getrandbits(width)))
 
-    async def _bench(self, ctx) -> None:
+    async def _bench(self, ctx: Any) -> None:
         """Host and screen in one loop over the clocks: several benches would cost more time."""
         if self.job.memory_seed is not None:
             self._scramble(ctx)
@@ -127,7 +128,7 @@ class _Run:
     def _activity_lines(self) -> Value:
         return Value.cast(self.machine.activity) if self.watch else Const(0)
 
-    def _receive(self, response) -> None:
+    def _receive(self, response: Any) -> None:
         kind = ResponseKind(response.kind)
         self.responses.append((kind, response.value, self.cycle))
         if kind == ResponseKind.FRAME_SHOWN:

@@ -66,8 +66,8 @@ def count_cells(component: wiring.Component, name: str = "component") -> Cells:
     return Cells(**totals)
 
 
-def _weight(cell: str, parameters: dict) -> tuple[str, int]:
-    def number(name):
+def _weight(cell: str, parameters: dict[str, str]) -> tuple[str, int]:
+    def number(name: str) -> int:
         return int(parameters[name], 2)
 
     if cell.startswith("$_"):

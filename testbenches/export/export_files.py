@@ -123,7 +123,8 @@ def export_summary(exported: Export) -> str:
     ))
 
 
-def _translated(configuration: MachineConfiguration, component: str | None) -> tuple[str, dict]:
+def _translated(configuration: MachineConfiguration, component: str | None
+                ) -> tuple[str, dict[str, Any]]:
     # They load Amaranth: only those who export wait for it.
     from .machine_json import component_for, describe
     from .verilog import component_verilog, machine_verilog

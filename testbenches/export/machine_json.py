@@ -2,7 +2,9 @@
 
 import re
 from collections import Counter
+from collections.abc import Callable, Iterator
 from importlib.metadata import version
+from typing import Any
 
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
@@ -25,7 +27,7 @@ _TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"
                    2: ("two_port_depth_test", "two_port_memory")}
 
 
-def _inspected(component: wiring.Component, facts):
+def _inspected(component: wiring.Component, facts: Callable[[wiring.Component], Any]) -> Any:
     """``facts`` of a component that is only looked at; Amaranth wants each elaborated once."""
     found = facts(component)
     Fragment.get(component, None)
@@ -37,7 +39,8 @@ def component_for(configuration: MachineConfiguration, name: str | None) -> wiri
     return Machine(configuration=configuration) if name is None else COMPONENTS[name](configuration)
 
 
-def describe(configuration: MachineConfiguration, verilog: str, name: str | None = None) -> dict:
+def describe(configuration: MachineConfiguration, verilog: str,
+             name: str | None = None) -> dict[str, Any]:
     """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
 
     Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
@@ -62,7 +65,7 @@ def describe(configuration: MachineConfiguration, verilog: str, name: str | None
     }
 
 
-def _clock_ports(module: str) -> list[dict]:
+def _clock_ports(module: str) -> list[dict[str, Any]]:
     """A combinational component has neither."""
     meanings = {"clk": "the one clock; everything happens at its rising edge",
                 "rst": "synchronous reset, high for at least one clock; boots the machine"}
@@ -70,11 +73,12 @@ def _clock_ports(module: str) -> list[dict]:
             for name, meaning in meanings.items() if f"\n  input {name};" in module]
 
 
-def _number_formats(configuration: MachineConfiguration) -> list[dict]:
+def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]:
     c, fraction = configuration, configuration.fraction_bits
     signed = not c.stays_in_range
 
-    def number(name, bits, meaning, *, signed=False, fraction_bits=0):
+    def number(name: str, bits: int, meaning: str, *, signed: bool = False,
+               fraction_bits: int = 0) -> dict[str, Any]:
         """``bits`` in all; the sign, if any, counts among the integer bits."""
         return {"name": name, "signed": signed, "bits": bits,
                 "integer_bits": bits - fraction_bits, "fraction_bits": fraction_bits,
@@ -103,7 +107,7 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict]:
     ]
 
 
-def _command_words(configuration: MachineConfiguration) -> dict:
+def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
     bodies = {
         commands.Opcode.FRAME_START: commands.frame_start_layout(),
         commands.Opcode.TRIANGLE: commands.triangle_layout(configuration),
@@ -131,7 +135,8 @@ def _command_words(configuration: MachineConfiguration) -> dict:
     }
 
 
-def _fields(layout: commands.Layout, offset: int, prefix: str = ""):
+def _fields(layout: commands.Layout, offset: int,
+            prefix: str = "") -> Iterator[dict[str, str | int]]:
     """Every plain field with its place in the word."""
     for name, entry in layout.items():
         if isinstance(entry, int):
@@ -147,7 +152,7 @@ def _modules(verilog: str) -> dict[str, str]:
             re.finditer(r"^module (\S+?)\(.*?^endmodule", verilog, re.DOTALL | re.MULTILINE)}
 
 
-def _memories(verilog: str, modules: dict[str, str], top: str) -> list[dict]:
+def _memories(verilog: str, modules: dict[str, str], top: str) -> list[dict[str, Any]]:
     """The memory modules and how often each is instantiated below ``top``."""
     counts = Counter({top: 1})
     waiting = [top]

@@ -44,7 +44,8 @@ class _Rewriter:
                 parts[found[1]][found[2].removeprefix("\\")] = found[3]
             yield from self._cell(kind, name, parts["parameter"], parts["connect"])
 
-    def _cell(self, kind, name, parameters, ports) -> Iterator[str]:
+    def _cell(self, kind: str, name: str, parameters: dict[str, str],
+              ports: dict[str, str]) -> Iterator[str]:
         widths = {key: int(parameters[f"{key}_WIDTH"]) for key in "ABY"
                   if f"{key}_WIDTH" in parameters}
         if kind == "$pmux":
@@ -70,7 +71,8 @@ class _Rewriter:
             parameters["Y_WIDTH"] = str(widths["A"])
         yield from _text(kind, name, parameters, ports)
 
-    def _fit(self, keys, width, parameters, ports) -> Iterator[str]:
+    def _fit(self, keys: str, width: int, parameters: dict[str, str],
+             ports: dict[str, str]) -> Iterator[str]:
         """Extend or cut operands to ``width``."""
         signed = all(parameters[f"{key}_SIGNED"] == "1" for key in keys)
         for key in keys:
@@ -88,7 +90,8 @@ class _Rewriter:
                 ports[key] = f"{{ {' '.join([top] * (width - own))} {operand} }}"
             parameters[f"{key}_WIDTH"] = str(width)
 
-    def _chain(self, name, width, count, ports) -> Iterator[str]:
+    def _chain(self, name: str, width: int, count: int,
+               ports: dict[str, str]) -> Iterator[str]:
         choices, choices_wire = self._wire(width * count)
         select, select_wire = self._wire(count)
         yield from (choices_wire, select_wire, f"  connect {choices} {ports['B']}",
@@ -113,7 +116,8 @@ def _slice(wire: str, high: int, low: int) -> str:
     return f"{wire} [{high}:{low}]"
 
 
-def _text(kind, name, parameters, ports) -> Iterator[str]:
+def _text(kind: str, name: str, parameters: dict[str, str],
+          ports: dict[str, str]) -> Iterator[str]:
     yield f"  cell {kind} {name}"
     yield from (f"    parameter \\{key} {value}" for key, value in parameters.items())
     yield from (f"    connect \\{key} {value}" for key, value in ports.items())

@@ -2,6 +2,8 @@
 
 import inspect
 import re
+from collections.abc import Iterator
+from typing import Any
 
 from amaranth.hdl import Shape, Value
 from amaranth.lib import data, stream, wiring
@@ -42,7 +44,7 @@ _COMMON = {
 }
 
 
-def described_ports(component: wiring.Component) -> list[dict]:
+def described_ports(component: wiring.Component) -> list[dict[str, Any]]:
     """Every port of a component's module, besides ``clk`` and ``rst``: ``name``, ``direction``,
     ``width``, ``meaning`` and, of structures, ``fields`` with bit offset and width.
 
@@ -57,7 +59,7 @@ def ports_in_parts(component: wiring.Component) -> list[dict]:
     for path, member, value in component.signature.flatten(component):
         width = len(Value.cast(value))
         if width:
-            port = {
+            port: dict[str, Any] = {
                 "name": "__".join(map(str, path)),
                 "direction": "input" if member.flow == wiring.In else "output",
                 "width": width,
@@ -69,7 +71,7 @@ def ports_in_parts(component: wiring.Component) -> list[dict]:
     return ports
 
 
-def stated_timing(component: wiring.Component) -> dict:
+def stated_timing(component: wiring.Component) -> dict[str, Any]:
     """The clocks of ``latency`` and of ``interval``, where a component has such figures, and what
     it says of time."""
     paragraphs = (inspect.getdoc(type(component)) or "").split("\n\n")
@@ -81,7 +83,7 @@ def stated_timing(component: wiring.Component) -> dict:
             "stated": " ".join(stated)}
 
 
-def _meanings(component: wiring.Component, path: tuple) -> list[str]:
+def _meanings(component: wiring.Component, path: tuple[str | int, ...]) -> list[str]:
     described, signature, texts = type(component), component.signature, []
     for name in path:
         if isinstance(name, int):  # an element of an array: described with it
@@ -125,7 +127,8 @@ def _plain(text: str) -> str:
     return " ".join(text.replace("``", "").split())
 
 
-def _fields(layout: data.Layout, prefix: str = "", offset: int = 0):
+def _fields(layout: data.Layout, prefix: str = "",
+            offset: int = 0) -> Iterator[dict[str, str | int]]:
     for name, field in layout:
         start = offset + field.offset
         yield {"name": f"{prefix}{name}", "offset": start, "width": Shape.cast(field.shape).width}

@@ -3,7 +3,9 @@
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from amaranth.back import rtlil
 from amaranth.hdl import (
@@ -129,7 +131,7 @@ class _Instantiated(wiring.Component):
         self._module = module
         super().__init__(signature)
 
-    def elaborate(self, platform) -> Elaboratable:
+    def elaborate(self, platform: Any) -> Elaboratable:
         return Instance(self._module, i_clk=ClockSignal(), i_rst=ResetSignal(), **{
             f"{'i' if flow == wiring.In else 'o'}_{name}": value
             for name, flow, value in _flat_ports(self)})
@@ -156,7 +158,7 @@ class Port:
     width: int
 
 
-def _flat_ports(component: wiring.Component):
+def _flat_ports(component: wiring.Component) -> Iterator[tuple[str, wiring.Flow, Value]]:
     for path, member, value in component.signature.flatten(component):
         yield "__".join(map(str, path)), member.flow, Value.cast(value)
 
@@ -198,7 +200,7 @@ def _translated(components: dict[str, wiring.Component]) -> str:
     # Said apart from the declaration: a start value, not the value of a variable that is assigned.
     text = re.sub(r"^  reg (\[[^]]+\] )?(\S+ ?) = (.*);$",
                   r"  reg \1\2;\n  initial \2 = \3;", text, flags=re.MULTILINE)
-    modules = {re.match(r"module (\S+?)\(", module)[1]: module.strip() + "\n"
+    modules = {module.removeprefix("module ").partition("(")[0]: module.strip() + "\n"
                for module in re.split(r"^(?=module )", text, flags=re.MULTILINE)[1:]}
     order = list(components)
     ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))

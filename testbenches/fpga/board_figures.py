@@ -27,8 +27,11 @@ def measure(parts: Mapping[str, Part], seeds: Sequence[int],
     placements = {}
     for name, part in parts.items():
         step(f"{name}: synthesising")
-        placements[name] = place_and_route(
-            part, seeds, lambda doing, name=name: step(f"{name}: {doing}"))
+
+        def board_step(doing: str, name: str = name) -> None:
+            step(f"{name}: {doing}")
+
+        placements[name] = place_and_route(part, seeds, board_step)
     return placements
 
 

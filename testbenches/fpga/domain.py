@@ -49,13 +49,14 @@ class Domain(wiring.Component):
             "pictures": In(PictureLines(configuration)),
         })
 
-    def elaborate(self, platform):
+    def elaborate(self, platform: Any) -> Module:
         m = Module()
         m.submodules.processing_element = self.element
         for number, unit in enumerate(self.units):
             m.submodules[f"memory_unit_{number}"] = unit
         left = wiring.flipped(self.left)
-        for card in (self.element, *self.units):
+        cards: tuple[ProcessingElement | MemoryUnit, ...] = (self.element, *self.units)
+        for card in cards:
             wiring.connect(m, left, card.left)
             m.d.comb += card.total.eq(self.total)
             left = card.right

@@ -26,7 +26,7 @@ class OutsideRam(wiring.Component):
         self._storages = tuple(storages)
         super().__init__(component.signature)
 
-    def elaborate(self, platform):
+    def elaborate(self, platform: Any) -> Module:
         m = Module()
         m.submodules.board = Fragment.get(self._component, _Outside(self._storages, platform))
         wiring.connect(m, wiring.flipped(self), self._component)

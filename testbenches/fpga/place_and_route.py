@@ -124,7 +124,7 @@ class Placement:
     @property
     def luts(self) -> int:
         """LUT4s, and two for each carry cell, which holds two of them."""
-        return self.lut4s + 2 * self.carry_cells
+        return int(self.lut4s + 2 * self.carry_cells)
 
     @property
     def median_mhz(self) -> float:

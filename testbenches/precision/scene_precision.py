@@ -213,7 +213,7 @@ def common_model(machines: Iterable[MachineConfiguration]) -> MachineConfigurati
     """
     machines = tuple(machines)
 
-    def widths(depth_plane: int, channel_plane: int, fraction_bits: int) -> dict[str, int]:
+    def widths(depth_plane: int, channel_plane: int, fraction_bits: int) -> dict[str, Any]:
         return {"fraction_bits": fraction_bits, "depth_integer_bits": depth_plane,
                 "channel_integer_bits": channel_plane}
 

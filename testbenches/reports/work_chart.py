@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
 from ..frames.responses import Work
@@ -25,8 +26,7 @@ def work_chart(work: Sequence[Work]) -> str:
     """
     with chart_style():
         height = 1.1 + min(0.34 * len(work), 12.0)
-        figure = Figure(figsize=(9.0, height), layout="constrained")
-        figure.get_layout_engine().set(wspace=0.06)
+        figure = Figure(figsize=(9.0, height), layout=ConstrainedLayoutEngine(wspace=0.06))
         fragments, busy = figure.subplots(1, 2, sharey=True)
         _bars(fragments, [element.fragments for element in work], FRAGMENTS_COLOR,
               "fragments tested")

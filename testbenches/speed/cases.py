@@ -72,9 +72,11 @@ class CaseLists:
     @property
     def frame(self) -> DisplayList:
         """Both, as the finished picture has them."""
-        return replace(self.once, **{
-            field: np.concatenate([getattr(self.once, field), getattr(self.twice, field)])
-            for field in ("position", "depth", "color")})
+        def both(field: str) -> NDArray[Any]:
+            return np.concatenate([getattr(self.once, field), getattr(self.twice, field)])
+
+        return replace(self.once, position=both("position"), depth=both("depth"),
+                       color=both("color"))
 
 
 def _data(name: str) -> Any:

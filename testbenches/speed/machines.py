@@ -8,7 +8,7 @@ from itertools import product
 
 from ...golden.planning.on_screen_widths import on_screen_widths
 from ...golden.specification.configuration import MachineConfiguration
-from ..machine_options import SETUPS
+from ..machine_options import SETUPS, SetupChoice
 from .cases import DEPTH_BITS, SIZE, SUB_BITS
 
 CLOCKS_PER_PIXEL = 4
@@ -30,7 +30,7 @@ class MachineAxes:
     elements: Sequence[int] = (1, 16)
     units: Sequence[int] = (2,)
     ports: Sequence[int] = (2,)
-    setups: Sequence[str] = ("host",)
+    setups: Sequence[SetupChoice] = ("host",)
     blocks: Sequence[int] = (1,)
     skew: bool | None = None
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
@@ -49,7 +49,7 @@ class BenchMachine:
     elements: int
     units: int
     ports: int
-    setup: str
+    setup: SetupChoice
     block: int
     skew: bool
     fifo: int
@@ -82,8 +82,8 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
             if len({getattr(machine, name) for machine in machines}) > 1]
 
 
-def _machine(elements: int, units: int, ports: int, setup: str, block: int, skew: bool | None,
-             fifo: int) -> BenchMachine:
+def _machine(elements: int, units: int, ports: int, setup: SetupChoice, block: int,
+             skew: bool | None, fifo: int) -> BenchMachine:
     if skew is None:
         skew = ports == 1 and units > 1 and block == 1
     configuration = MachineConfiguration(

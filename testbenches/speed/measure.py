@@ -197,10 +197,10 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
     fragments = [int(depth_complexity(part, **shifts).sum()) for part in (case.once, case.twice)]
     where = f"{case.name}, {case.order} order, on {configuration.cards}"
     comparison = compare(configuration, case.frame, simulation)
-    if not comparison.equal:
+    if (first := comparison.first_difference) is not None:
         raise DifferentError(
             f"{where}: {comparison.pixels_different:,} colours and {comparison.depths_different:,} "
-            f"depths differ from the golden picture, first at {comparison.first_difference.pixel}")
+            f"depths differ from the golden picture, first at {first.pixel}")
     drawn = np.diff(counts.sum(axis=1))
     if drawn.tolist() != fragments:
         raise DifferentError(f"{where}: {drawn.tolist()} fragments drawn, not {fragments}")

@@ -75,9 +75,10 @@ def _header(measured: bool) -> tuple[str, ...]:
 def _cells(row: BenchRow) -> tuple[str, ...]:
     cells = [row.case, f"{row.triangles:,}", f"{row.cycles / row.triangles:,.2f}",
              f"{100 * row.bound / row.cycles:.0f} %", row.binding]
-    if (measured := row.measured) is not None:
+    measured, error = row.measured, row.prediction_error
+    if measured is not None and error is not None:
         cells += [
-            f"{100 * row.prediction_error:+.1f} %",
+            f"{100 * error:+.1f} %",
             f"{measured.cycles_per_fragment:.3f}",
             f"{measured.fragments_per_clock:.2f}",
             f"{100 * measured.utilisation:.0f} %",

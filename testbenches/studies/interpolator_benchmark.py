@@ -14,6 +14,7 @@ import sys
 import tempfile
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import Any
 
 import click
 from amaranth.back import rtlil
@@ -41,14 +42,14 @@ def simulate(form: Form, expected: list[int]) -> int:
     values: list[int] = []
     clocks = 0
 
-    async def send(ctx):
+    async def send(ctx: Any) -> None:
         for span in form.spans:
             ctx.set(dut.spans.payload, span)
             ctx.set(dut.spans.valid, 1)
             await ctx.tick().until(dut.spans.ready)
         ctx.set(dut.spans.valid, 0)
 
-    async def receive(ctx):
+    async def receive(ctx: Any) -> None:
         nonlocal clocks
         ctx.set(dut.values.ready, 1)
         while len(values) < len(expected):

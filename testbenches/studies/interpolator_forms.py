@@ -54,7 +54,7 @@ class FixedPointInterpolator(wiring.Component):
             "values": Out(stream.Signature(unsigned(configuration.depth_bits))),
         })
 
-    def elaborate(self, platform):
+    def elaborate(self, platform: Any) -> Module:
         m = Module()
         m.submodules.stepper = stepper = FragmentStepper(configuration=self.configuration)
         m.submodules.interpolator = interpolator = Interpolator(configuration=self.configuration)
@@ -133,7 +133,7 @@ def _remainder_planes(display_list: DisplayList, primitive: int, left: int, top:
     corners = display_list.position[primitive].tolist()
     values = display_list.depth[primitive].tolist()
     (x0, y0), (x1, y1), (x2, y2) = corners
-    area = abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
+    area: int = abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
     unit = 1 << display_list.sub_bits
 
     def multiple(right: int, down: int) -> Fraction:

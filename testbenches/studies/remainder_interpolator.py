@@ -7,7 +7,9 @@ product of remainders would have to be divided.  One of the doublings of the inc
 along x is the stride's.
 """
 
-from amaranth.hdl import Module, Mux, Signal, unsigned
+from typing import Any
+
+from amaranth.hdl import Module, Mux, Signal, Value, unsigned
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -51,7 +53,8 @@ class RemainderInterpolator(wiring.Component):
             "values": Out(stream.Signature(unsigned(value_bits))),
         })
 
-    def _sum(self, m, name, one, other, denominator):
+    def _sum(self, m: Module, name: str, one: data.View, other: data.View,
+             denominator: Value) -> Signal:
         """Remainders are below D, so one subtraction is enough."""
         total = Signal(self._number, name=name)
         remainder = Signal(len(one.remainder) + 1, name=f"{name}_remainder")
@@ -64,7 +67,7 @@ class RemainderInterpolator(wiring.Component):
         ]
         return total
 
-    def elaborate(self, platform):
+    def elaborate(self, platform: Any) -> Module:
         m = Module()
         span = Signal(self._span)
         value, step, multiple, addend = (Signal(self._number, name=name)
@@ -122,7 +125,7 @@ class PipelinedRemainderInterpolator(RemainderInterpolator):
     def latency(self) -> int:
         return 2 * self._steps_bits + 1
 
-    def elaborate(self, platform):
+    def elaborate(self, platform: Any) -> Module:
         m = Module()
         stage = data.StructLayout(self._span.members | dict.fromkeys(
             ("value", "multiple", "step"), self._number))

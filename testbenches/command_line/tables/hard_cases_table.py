@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -11,8 +12,8 @@ from ....golden.hard_cases.catalogue import HARD_CASES
 from ....golden.scene_argument import HardCaseScene
 
 
-def _listed() -> list[dict[str, str | int | list[str]]]:
-    rows = []
+def _listed() -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
     for case in HARD_CASES.values():
         display_list = case.make()
         rows.append({
