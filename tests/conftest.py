@@ -1,16 +1,36 @@
-"""What all tests share: ``library/`` is importable, and what tests measure is shown at the end."""
+"""What all tests share: ``library/`` is importable, some tests are marked quick, and what tests
+measure is shown at the end."""
 
 import sys
 from pathlib import Path
 
 import pytest
+from hypothesis.configuration import set_hypothesis_home_dir
 
-LIBRARY = Path(__file__).parent / "library"
+TESTS = Path(__file__).parent
+LIBRARY = TESTS / "library"
 if str(LIBRARY) not in sys.path:
     sys.path.insert(0, str(LIBRARY))
 pytest.register_assert_rewrite(*(path.stem for path in LIBRARY.iterdir() if path.stem[0] != "_"))
 
+# From whatever folder the tests are run, hypothesis keeps its examples in one.
+set_hypothesis_home_dir(TESTS.parent / ".hypothesis")
+
+#: ``pytest -m quick``: golden models, components and the structure of the house, a minute or so
+#: on two cores.
+QUICK = ("golden", "hdl", "test_house.py")
+#: But for whole machines and what tries every triangle there is.
+NOT_QUICK = ("golden/precision/test_error_bound.py", "hdl/test_machine.py")
+
 MEASURED = "measured"
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
+def pytest_collection_modifyitems(items):
+    for item in items:
+        place = item.path.relative_to(TESTS)
+        if place.parts[0] in QUICK and place.as_posix() not in NOT_QUICK:
+            item.add_marker(pytest.mark.quick)
 
 
 def pytest_terminal_summary(terminalreporter):

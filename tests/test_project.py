@@ -35,6 +35,8 @@ def test_the_golden_models_type_check(tmp_path):
     ("golden/specification", [], False),
     ("testbenches", [], False),
     ("tests/library", [], False),
+    (".", ["-m", "quick", "tests/hdl/backplane"], True),
+    (".", ["-m", "quick", "tests/hdl/test_machine.py"], False),
 ])
 def test_pytest_collects_from_anywhere(folder, words, found):
     """Tests where there are some, and never a source that looks like one."""

@@ -16,7 +16,10 @@ def test_adds_one_modulo_the_lines(bits):
     def steps(ctx):
         for left in range(1 << bits):
             ctx.set(dut.left, left)
-            assert ctx.get(dut.right) == (left + 1) % (1 << bits)
+            right, wanted = ctx.get(dut.right), (left + 1) % (1 << bits)
+            assert right == wanted, (
+                f"ID increment of the memory unit board: {left} comes in on {bits} lines and "
+                f"{right} leaves, not {wanted}")
 
     evaluate(dut, steps)
 
@@ -30,8 +33,10 @@ def test_a_chain_numbers_its_units_and_returns_their_total():
         module.d.comb += following.left.eq(link.right)
 
     def steps(ctx):
-        assert [ctx.get(link.left) for link in chain] == list(range(11))
-        assert ctx.get(chain[-1].right) == 11
+        numbers = [ctx.get(link.left) for link in chain]
+        assert numbers == list(range(11)), f"IDs of eleven memory unit boards in a row: {numbers}"
+        total = ctx.get(chain[-1].right)
+        assert total == 11, f"total that eleven memory unit boards return: {total}"
 
     evaluate(module, steps)
 

@@ -158,7 +158,10 @@ class Card(Agent):
 
     def sample(self, ctx):
         dut, lines, counts = self.dut, self.dut.left.lines, self.counts
-        assert ctx.get(dut.right.id) == self.id + 1
+        right = ctx.get(dut.right.id)
+        assert right == self.id + 1, (
+            f"memory unit board: ID {self.id} comes in and {right} leaves, not {self.id + 1}; "
+            "its ID increment is hdl/backplane/id_increment.py")
         for name in ("write", "read"):
             passed = ctx.get(getattr(dut.right.lines, name))
             assert {field: passed[field] for field in getattr(self, name)} == getattr(self, name)
