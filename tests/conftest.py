@@ -19,8 +19,9 @@ set_hypothesis_home_dir(TESTS.parent / ".hypothesis")
 #: ``pytest -m quick``: golden models, components and the structure of the house, a minute or so
 #: on two cores.
 QUICK = ("golden", "hdl", "test_house.py")
-#: But for whole machines and what tries every triangle there is.
-NOT_QUICK = ("golden/precision/test_error_bound.py", "hdl/test_machine.py")
+#: But for whole machines, whole lists through the set-up, and what tries every triangle there is.
+NOT_QUICK = ("golden/precision/test_error_bound.py", "hdl/test_machine.py",
+             "hdl/triangle_setup/test_triangle_setup.py")
 
 MEASURED = "measured"
 
