@@ -53,7 +53,7 @@ def described_ports(component: wiring.Component) -> list[dict[str, Any]]:
     return [{**port, "meaning": ": ".join(port["meaning"])} for port in ports_in_parts(component)]
 
 
-def ports_in_parts(component: wiring.Component) -> list[dict]:
+def ports_in_parts(component: wiring.Component) -> list[dict[str, Any]]:
     """The same, but ``meaning`` a list of texts, from the member of the component inwards."""
     ports = []
     for path, member, value in component.signature.flatten(component):
