@@ -125,6 +125,24 @@ def test_hardware_shares_with_golden_what_the_list_allows():
     assert set(used) == SHARED_WITH_HDL, "a module of SHARED_WITH_HDL is no longer imported"
 
 
+def test_only_organisations_know_where_a_pixel_lies():
+    """Whoever else asks the interlace or the cards would have to learn of every organisation."""
+    problems = []
+    for module, path in MODULES.items():
+        if module[0] not in ("golden", "testbenches") or module[1:2] in (
+                ("specification",), ("organisations",)):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            asked = isinstance(node, ast.Attribute) and node.attr in ("interlace", "interlaces")
+            named = isinstance(node, ast.ImportFrom) and (
+                (node.module or "").endswith("interlace")
+                or any(alias.name == "domains" for alias in node.names))
+            if asked or named:
+                problems.append(f"{path.relative_to(ROOT)}:{node.lineno}: asks the interlace or "
+                                "the cards; organisation_of(configuration) knows")
+    assert not problems, said(problems)
+
+
 def test_only_studies_import_the_installed_package():
     """They are not installed and run from a clone; all others import relatively."""
     problems = []

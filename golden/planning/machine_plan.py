@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ..organisations.organisation_of import organisation_of
 from ..specification.commands import layout_bits, prepared_triangle_layout
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
@@ -85,8 +86,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     rest = {"shading": "flat" if display_list.flat else "gouraud"} | rest
     machine = MachineConfiguration(**fixed, sub_bits=display_list.sub_bits,
                                    fraction_bits=fraction_bits or 0, **rest)
-    interlace = machine.interlace
-    needs = scene_needs(display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    needs = scene_needs(display_list, **organisation_of(machine).resolution.shifts)
     if fraction_bits is None:
         fraction_bits = needs.exact_fraction_bits
         if max_error:
@@ -129,6 +129,7 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
 
     low, high = (f"{coordinate / unit:g}" for coordinate in needs.coordinates)
     drops = full.sub_bits - planned.sub_bits
+    width, height, *_ = organisation_of(planned).resolution
     return [
         bits("sub-pixel bits", "sub_bits",
              f"every coordinate is a multiple of {1 << drops}/{unit << drops} pixel" if drops else
@@ -150,8 +151,7 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
         _interpolants(planned, full, needs),
         PlanLine("lines", "none", "none", "the scene has triangles only: no line stepper"),
         PlanLine("words a memory unit", f"{planned.words:,}", f"{full.words:,}",
-                 f"{planned.interlace.width}x{planned.interlace.height} pixels over "
-                 f"{planned.units} units"),
+                 f"{width}x{height} pixels over {planned.units} units"),
         PlanLine("FIFO depth", str(planned.fifo_depth), str(full.fifo_depth),
                  f"{needs.drawn:,} of {needs.triangles:,} triangles may cover a pixel"),
     ]

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation_of import organisation_of
 from ..reference.triangle_setup import Edges, Outlines, outline
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
@@ -229,8 +230,7 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
         if needed != built:
             raise refuse(field, needed, built)
     display_list = with_sub_bits(display_list, configuration.sub_bits)
-    interlace = configuration.interlace
-    needs = scene_needs(display_list, x_shift=interlace.x_shift, y_shift=interlace.y_shift)
+    needs = scene_needs(display_list, **organisation_of(configuration).resolution.shifts)
     bits = configuration.fraction_bits
     for field, needed in (
         ("coordinate_bits", needs.coordinate_bits),

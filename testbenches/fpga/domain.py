@@ -9,7 +9,7 @@ from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.card_order import domains
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.backplane.connectors import BroadcastLines, Connector, PictureLines, ScanLines
 from ...hdl.memory_unit.memory_unit import MemoryUnit
@@ -38,7 +38,7 @@ class Domain(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self.element = ProcessingElement(configuration=configuration)
-        _, units = domains(configuration.cards)[0]
+        units = organisation_of(configuration).domains[0].units
         self.units = [MemoryUnit(configuration=configuration) for _ in range(units)]
         super().__init__({
             "left": In(Connector(configuration)),
