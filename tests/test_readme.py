@@ -1,4 +1,4 @@
-"""What the README shows is what happens."""
+"""What the README and the page of the commands show is what happens."""
 
 import os
 import re
@@ -12,20 +12,24 @@ from amaranth.sim import Simulator
 
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.export.export_files import export
-from cardcage.testbenches.machine_options import MachineOptions
 from cardcage.testbenches.render import RenderOptions, prepare_render
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def blocks(language):
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
+PAGE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 
 
-COMMANDS = [line for block in blocks("sh") for line in block.splitlines()
-            if line.startswith("cardcage ")]
-QUICK = [line for line in COMMANDS if "minute" not in line.partition("#")[2]]
+def blocks(language, text=README):
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+
+
+#: Command → its comment, on either page.
+COMMANDS = {line.partition("  #")[0]: line.partition("  #")[2]
+            for block in blocks("sh", PAGE) + blocks("sh") for line in block.splitlines()
+            if line.startswith("cardcage ")}
+QUICK = [line for line, comment in COMMANDS.items() if "minute" not in comment]
 
 
 def test_the_gate_runs_exactly_the_test_command():
@@ -38,7 +42,7 @@ def test_the_quick_commands_do_what_they_should(tmp_path):
     folder = str(Path(sys.executable).parent)
     environment = os.environ | {"PATH": folder + os.pathsep + os.environ["PATH"]}
     for line in QUICK:  # in order: one replays what another wrote
-        done = subprocess.run(shlex.split(line, comments=True), cwd=tmp_path, env=environment,
+        done = subprocess.run(shlex.split(line), cwd=tmp_path, env=environment,
                               capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, f"{line}: {done.stderr}"
         assert done.stdout.strip(), line
@@ -49,7 +53,7 @@ def test_the_quick_commands_do_what_they_should(tmp_path):
 @pytest.mark.parametrize("line", [line for line in COMMANDS if line not in QUICK])
 def test_the_slow_commands_parse(line):
     """Their options exist: the help of the same command names each."""
-    words = shlex.split(line, comments=True)
+    words = shlex.split(line)
     shown = subprocess.run([str(Path(sys.executable).parent / "cardcage"), words[1], "--help"],
                            capture_output=True, text=True, timeout=60, check=True).stdout
     for word in words:
@@ -73,15 +77,20 @@ def test_the_python_example_builds_the_machine_of_the_command_beside_it():
 
 
 def test_a_machine_without_a_scene_is_the_one_that_export_writes(tmp_path):
-    options = MachineOptions(cards="PM", size=(16, 12), clocks_per_pixel=3)
-    exported = export(tmp_path / "machine.v", options=options, component="id_increment")
+    exported = export(tmp_path / "machine.v", component="id_increment", cards="PM", size=(16, 12),
+                      clocks_per_pixel=3)
     assert exported.configuration == MachineConfiguration(
         cards="PM", width=16, height=12, clocks_per_pixel=3)
 
 
 def test_files_it_names_exist():
-    links = re.findall(r"\]\(((?!http)[^)]+)\)", README)
-    sources = re.findall(r"`([a-z]+/[\w-]+\.(?:py|md))`", README)
-    assert links and sources
-    for name in links + sources:
-        assert (ROOT / name).is_file(), name
+    """Links from the page's own folder, sources from the root; of every page."""
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md",
+             *(ROOT / "docs").rglob("*.md")]
+    missing = []
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        named = [page.parent / link for link in re.findall(r"\]\(((?!http)[^)#]+)[^)]*\)", text)]
+        named += [ROOT / name for name in re.findall(r"`((?:[a-z_]+/)+[\w-]+\.(?:py|md))`", text)]
+        missing += [f"{page.relative_to(ROOT)}: {name}" for name in named if not name.exists()]
+    assert not missing, "\n".join(missing)
