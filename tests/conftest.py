@@ -23,7 +23,19 @@ QUICK = ("golden", "hdl", "test_house.py")
 NOT_QUICK = ("golden/precision/test_error_bound.py", "hdl/test_machine.py",
              "hdl/triangle_setup/test_triangle_setup.py")
 
+#: What takes longest is begun first, so that no core is left alone with it at the end.
+SLOW = ("test_readme.py", "testbenches/export/test_equivalence.py", "testbenches/speed", "machine",
+        "testbenches", "test_install.py")
+
 MEASURED = "measured"
+
+
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist
+def pytest_xdist_make_scheduler(config, log):
+    """Neighbouring tests share models and stay on one core until another core runs out of work."""
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
@@ -32,6 +44,12 @@ def pytest_collection_modifyitems(items):
         place = item.path.relative_to(TESTS)
         if place.parts[0] in QUICK and place.as_posix() not in NOT_QUICK:
             item.add_marker(pytest.mark.quick)
+    items.sort(key=_slow_first)
+
+
+def _slow_first(item):
+    place = item.path.relative_to(TESTS).as_posix()
+    return next((rank for rank, slow in enumerate(SLOW) if place.startswith(slow)), len(SLOW))
 
 
 def pytest_terminal_summary(terminalreporter):
