@@ -42,7 +42,8 @@ MUTANTS = {
         "Mux(in_upper, triangle.top, triangle.middle)", "triangle.top"),
     "a row skipped at the end": (
         "rasteriser.triangle_rows", "TriangleRows", ["rasteriser.triangle_spans"],
-        "after_base >= triangle.bottom", "after_base + 1 >= triangle.bottom"),
+        "self._after_base >= self._triangle.bottom",
+        "self._after_base + 1 >= self._triangle.bottom"),
     "one row where there are two": (
         "processing_element.broadcast_queue", "BroadcastQueue",
         ["processing_element.processing_element"],
@@ -102,7 +103,7 @@ MUTANTS = {
         "m.If(self.swept)", "m.If(1)"),
     "a frame starts before all are done": (
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "when=quiet & self.tags.ready", "when=self.tags.ready"),
+        "when=self._quiet & self.tags.ready", "when=self.tags.ready"),
     "with two ports the winner a clock ahead is not seen": (
         "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(follows & winning, write.depth, stored)", "stored"),
@@ -117,7 +118,7 @@ MUTANTS = {
         "front.eq(~pictures.front)", "front.eq(pictures.front)"),
     "a frame ends before all are done": (
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "self.broadcast.done & (settle == 0)", "settle == 0"),
+        "self.broadcast.done & (self._settle == 0)", "self._settle == 0"),
     "columns step one pixel instead of the lattice's stride": (
         "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
         "span.x + span.stride", "span.x + 1"),
