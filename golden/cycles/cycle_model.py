@@ -33,6 +33,7 @@ from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
+from ..specification.queues import OUTLINES_WAITING
 from ..specification.sampling_grid import Grid
 from .element_latencies import NEVER, PIPELINE, Drawn, Pipeline
 from .element_spans import LatticeSpans, lattice_spans
@@ -58,7 +59,7 @@ class SetupTiming:
 
     interval: int
     latency: int = 0
-    waiting: int = 16
+    waiting: int = OUTLINES_WAITING
     inside: int = 1
     leaving: int = 2
 
@@ -229,11 +230,10 @@ class _Cage:
         """The triangle that was sent; ``walk``: clocks from its load to the next."""
         pipeline = self._pipeline
         load = max(self._load[element], self._sent + pipeline.queue)
-        walked = load + walk
         drawn, walker, done = self._elements[element].take(load, cost)
-        self._load[element] = max(walked, walker)
+        self._load[element] = max(load + walk, walker)
         places = self._free[element]
         places.popleft()
-        places.append(1 + max(walked + pipeline.found, drawn - pipeline.valued))
+        places.append(1 + drawn - pipeline.valued)
         self._room = max(self._room, places[0])
         self.finished = max(self.finished, done + pipeline.finish)

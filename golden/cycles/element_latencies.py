@@ -1,9 +1,15 @@
-"""The facts of a processing element's pipeline that the cycle model goes by."""
+"""The facts of a processing element's pipeline that the cycle model goes by.
+
+The golden models do not import the hardware, so the clocks are said here once more;
+``tests/machine/test_cycle_constants.py`` holds them to what its components state.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import NamedTuple
+
+from ..specification.queues import SPANS_WAITING
 
 #: Clocks: long before all that counts.
 NEVER = -1e15
@@ -15,7 +21,6 @@ class Pipeline:
 
     ``queue``        from a broadcast to the walker's load, where that is idle
     ``latency``      from the load until the depth test takes the first row's first fragment
-    ``found``        from a row's turn in the walker until its first pixel is ready to be valued
     ``spans_ahead``  spans that fit between the walker and the fragments
     ``lead``         by how much the walk runs ahead of the fragments, where they are full
     ``valued``       from the pixel's valuing until its fragment has been taken
@@ -27,8 +32,7 @@ class Pipeline:
 
     queue: int = 3
     latency: int = 15
-    found: int = 8
-    spans_ahead: int = 16
+    spans_ahead: int = SPANS_WAITING
     lead: int = 5
     valued: int = 6
     first_row: int = 2

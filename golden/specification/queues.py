@@ -5,10 +5,16 @@ from __future__ import annotations
 from .card_order import domains
 from .configuration import MachineConfiguration
 
+#: So many spans are found ahead: rows of few pixels hide behind longer ones.
+SPANS_WAITING = 16
+
 #: Fragments that can wait before each lane, so that short runs in one unit even out, and rows
 #: without fragments.
 FRAGMENTS_WAITING = 16
 
+#: Outlines of triangles that can wait for set-up in hardware: more than the pipeline that finds
+#: them is long, so that it can be full.
+OUTLINES_WAITING = 16
 
 
 def depth_lanes(configuration: MachineConfiguration) -> int:

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.activity import ACTIVITY_BITS
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.queues import depth_lanes
+from ...golden.specification.queues import SPANS_WAITING, depth_lanes
 from ..backplane.connectors import BroadcastLines, Connector, memory_bus_bits
 from ..backplane.response_link import ResponseLink
 from ..backplane.words import span_layout
@@ -27,9 +27,6 @@ from .survey import Survey
 __all__ = ["ProcessingElement"]
 
 COUNTER_BITS = 32
-
-#: So many spans are found ahead: rows of few pixels hide behind longer ones.
-SPANS_WAITING = 16
 SPANS_LATENCY = 1
 
 

@@ -6,6 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.queues import OUTLINES_WAITING
 from ...golden.specification.ranges import CHANNEL_BITS
 from ..arithmetic.delay import delayed
 from ..arithmetic.pipelined_multiplier import PipelinedMultiplier
@@ -68,8 +69,7 @@ class TriangleOutline(wiring.Component):
     Fuchs & Johnson, figure 12: the controller prepares a polygon while the last one is drawn.
     """
 
-    #: Places in the queue: more than the pipeline is long, so that it can be full.
-    queue_depth = 16
+    queue_depth = OUTLINES_WAITING
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration

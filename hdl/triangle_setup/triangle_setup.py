@@ -57,6 +57,9 @@ class TriangleSetup(wiring.Component):
     while the processing elements work on the previous polygon.
     """
 
+    #: Clocks between two triangles that wait to be taken.
+    leaving = 2
+
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = c = configuration
         self._outlines = TriangleOutline(configuration=c)

@@ -13,7 +13,6 @@ from amaranth.hdl import Fragment
 from ...golden.cycles.cycle_model import CyclePrediction, SetupTiming, predict_cycles
 from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.triangle_setup.outline import TriangleOutline
 from ...hdl.triangle_setup.triangle_setup import TriangleSetup
 from ..engines.engine import Engine
 from .cases import CaseLists, Order, case_lists
@@ -101,7 +100,7 @@ def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
     unit = TriangleSetup(configuration=configuration)
     Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
     return SetupTiming(interval=unit.interval, latency=unit.preparation,
-                       waiting=TriangleOutline.queue_depth, inside=unit.depth)
+                       inside=unit.depth, leaving=unit.leaving)
 
 
 def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> int:

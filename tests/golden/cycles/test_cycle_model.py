@@ -113,8 +113,7 @@ def written_out(configuration, listed, pipeline, depth, setup):
                 return end - max(spans, sum(done[-1 - spans:])) if len(done) > spans else never
 
             load[element] = max(begin + walk, back(pipeline.spans_ahead) - pipeline.lead)
-            freed[element].append(1 + max(begin + walk + pipeline.found,
-                                          free[element] - pipeline.valued))
+            freed[element].append(1 + free[element] - pipeline.valued)
         finished.append(max(free) + pipeline.finish)
     return finished
 

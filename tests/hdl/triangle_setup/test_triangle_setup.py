@@ -114,9 +114,11 @@ def test_a_list_that_waits_at_the_output(kind, count, wait):
     """All queues fill up, the input waits, and nothing is lost or out of order."""
     configuration = machine(kind)
     waits = iter([wait] + [0] * count)
-    _, source, _ = run(configuration, scene(configuration, f"full {kind}", count),
-                       (no_pause, lambda: next(waits)))
+    dut, source, sink = run(configuration, scene(configuration, f"full {kind}", count),
+                            (no_pause, lambda: next(waits)))
     assert source.taken[-1] >= wait, "the input waited"
+    leaving = np.diff(sink.clocks[:dut.depth])
+    assert len(leaving) > 1 and set(leaving) == {dut.leaving}
 
 
 def corners(count, seed, bits):
