@@ -1,7 +1,8 @@
 """The words between the host and the central broadcast controller, version 3.
 
 One place for the layout: the hardware builds its structures from these tables,
-the host packs its words with them, and ``docs/command-words.md`` describes them.
+the host packs and reads its words with them, ``machine.json`` lists them, and
+``docs/command-words.md`` describes them.
 A command is one word on the command stream; in a file it is ``command_words``
 32-bit words, least significant first.  The opcode is in the low ``OPCODE_BITS``
 bits, the fields follow from ``BODY_OFFSET`` upwards without gaps.
@@ -38,11 +39,12 @@ class Opcode(IntEnum):
 
 
 class ResponseKind(IntEnum):
-    """What the machine answers: ``RESPONSE_KIND_BITS`` of kind below a 32-bit value."""
+    """What the machine answers: ``RESPONSE_KIND_BITS`` of kind below ``RESPONSE_VALUE_BITS`` of
+    value, whose fields are in ``RESPONSE_FIELDS``."""
 
-    DOMAIN = 1  # at boot, per processing element: first unit << 16 | number of units
-    UNITS = 2  # at boot: units in some domain << 16 | total units
-    PICTURE = 3  # at boot: the machine's height << 16 | width
+    DOMAIN = 1  # at boot, per processing element: its memory units
+    UNITS = 2  # at boot: units in some domain, units in the cage
+    PICTURE = 3  # at boot: the machine's own resolution
     BOOTED = 4  # at boot: cycles from reset until both pictures were black
     FRAME_DRAWN = 5  # cycles from the frame start to the last processing element's done
     FRAME_SHOWN = 6  # scans that began with the old picture since the frame start
@@ -62,6 +64,24 @@ class Fault(IntEnum):
 
 RESPONSE_KIND_BITS = 8
 RESPONSE_VALUE_BITS = 32
+
+#: The word itself.
+RESPONSE_LAYOUT: Layout = {"kind": RESPONSE_KIND_BITS, "value": RESPONSE_VALUE_BITS}
+
+#: What the value of each kind is made of.  Numbers of units, and a picture's sides, fit in half.
+_HALF = RESPONSE_VALUE_BITS // 2
+RESPONSE_FIELDS: dict[ResponseKind, Layout] = {
+    ResponseKind.DOMAIN: {"units": _HALF, "first": _HALF},
+    ResponseKind.UNITS: {"total": _HALF, "owned": _HALF},
+    ResponseKind.PICTURE: {"width": _HALF, "height": _HALF},
+    ResponseKind.BOOTED: {"cycles": RESPONSE_VALUE_BITS},
+    ResponseKind.FRAME_DRAWN: {"cycles": RESPONSE_VALUE_BITS},
+    ResponseKind.FRAME_SHOWN: {"scans": RESPONSE_VALUE_BITS},
+    ResponseKind.DEPTH: {"depth": RESPONSE_VALUE_BITS},
+    ResponseKind.FRAGMENTS: {"fragments": RESPONSE_VALUE_BITS},
+    ResponseKind.BUSY: {"cycles": RESPONSE_VALUE_BITS},
+    ResponseKind.ERROR: {"fault": RESPONSE_VALUE_BITS},
+}
 
 
 def plane_layout(bits: int) -> Layout:
@@ -143,6 +163,17 @@ def pack(layout: Layout, values: Any) -> Any:
     return word
 
 
+def unpack(layout: Layout, word: Any) -> dict[str, Any]:
+    """The inverse of ``pack``: ``word``, an integer or an array of them, taken apart."""
+    values: dict[str, Any] = {}
+    for name, entry in layout.items():
+        bits = entry if isinstance(entry, int) else layout_bits(entry)
+        part = word & ((1 << bits) - 1)
+        values[name] = part if isinstance(entry, int) else unpack(entry, part)
+        word = word >> bits
+    return values
+
+
 def command(opcode: Opcode, body: int = 0) -> int:
     return int(opcode) | body << BODY_OFFSET
 
@@ -152,6 +183,21 @@ def frame_start(background: tuple[int, int, int]) -> int:
                    pack(frame_start_layout(), dict(zip(CHANNELS, background, strict=True))))
 
 
-def unpack_response(word: int) -> tuple[ResponseKind, int]:
-    kind = ResponseKind(word & ((1 << RESPONSE_KIND_BITS) - 1))
-    return kind, word >> RESPONSE_KIND_BITS
+def opcode_of(word: int) -> int:
+    """The opcode of a command, which need not be one of ``Opcode``."""
+    return word & ((1 << OPCODE_BITS) - 1)
+
+
+def unpack_response(word: int) -> tuple[int, int]:
+    """The kind, which need not be one of ``ResponseKind``, and the value."""
+    return word & ((1 << RESPONSE_KIND_BITS) - 1), word >> RESPONSE_KIND_BITS
+
+
+def response_value(kind: ResponseKind, **fields: int) -> int:
+    """The value of a response, from all of its fields."""
+    return int(pack(RESPONSE_FIELDS[kind], fields))
+
+
+def response_fields(kind: ResponseKind, value: Any) -> dict[str, Any]:
+    """The fields of a response's value, or arrays of them of an array of values."""
+    return unpack(RESPONSE_FIELDS[kind], value)

@@ -6,8 +6,9 @@ from .errors import InputError
 
 MAXIMUM_SIZE = 4096
 
-#: Of a colour channel.
+#: Of a colour channel, and of a colour: red in the low bits, then green, blue.
 CHANNEL_BITS = 8
+COLOR_BITS = 3 * CHANNEL_BITS
 
 #: Field, least and greatest value, wherever a picture's format is given.
 FORMAT_RANGES = (

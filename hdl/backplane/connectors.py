@@ -22,7 +22,7 @@ from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import COLOR_BITS
 from .words import broadcast_layout, response_layout
 
 __all__ = [
@@ -56,7 +56,7 @@ def write_request_layout(*, id_bits: int, address_bits: int, depth_bits: int) ->
         "unit": id_bits,
         "address": address_bits,
         "depth": depth_bits,
-        "color": 3 * CHANNEL_BITS,
+        "color": COLOR_BITS,
     })
 
 
@@ -211,7 +211,7 @@ class ScanLines(wiring.Signature):
         Announces a scan slot: a unit whose pixel is due reads it in the next clock.
     show: Out(scan_address_layout)
         The pixel on the video bus in the next clock: ``fetch`` of three clocks ago.
-    video: In(24)
+    video: In(COLOR_BITS)
         Red in the low byte, then green, blue: from the unit that holds the shown pixel, if that
         has been drawn; others drive 0 (wired or).
     drawn: In(1)
@@ -223,6 +223,6 @@ class ScanLines(wiring.Signature):
         super().__init__({
             "fetch": Out(scan_address_layout(configuration)),
             "show": Out(scan_address_layout(configuration)),
-            "video": In(3 * CHANNEL_BITS),
+            "video": In(COLOR_BITS),
             "drawn": In(1),
         })

@@ -12,7 +12,9 @@ __all__ = [
     "outline_layout",
     "planes_layout",
     "prepared_triangle_layout",
+    "response_fields",
     "response_layout",
+    "response_value",
     "row_shape",
     "span_layout",
     "struct_layout",
@@ -83,10 +85,18 @@ def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
 
 def response_layout() -> data.StructLayout:
     """One response word: its kind, a ``ResponseKind``, and its value."""
-    return data.StructLayout({
-        "kind": unsigned(commands.RESPONSE_KIND_BITS),
-        "value": unsigned(commands.RESPONSE_VALUE_BITS),
-    })
+    return struct_layout(commands.RESPONSE_LAYOUT)
+
+
+def response_fields(kind: commands.ResponseKind, value: Value) -> data.View:
+    """The value of a response, by field."""
+    return data.View(struct_layout(commands.RESPONSE_FIELDS[kind]), value)
+
+
+def response_value(kind: commands.ResponseKind, **fields: Value) -> Value:
+    """The value of a response from all of its fields, each extended or cut to its width."""
+    return Cat(fields[name][:bits] if len(fields[name]) > bits else fields[name] | C(0, bits)
+               for name, bits in commands.RESPONSE_FIELDS[kind].items())
 
 
 def span_layout(configuration: MachineConfiguration) -> data.StructLayout:

@@ -7,9 +7,15 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import COLOR_BITS
 from ..backplane.connectors import BroadcastLines, Connector, PictureLines
-from ..backplane.words import Operation, broadcast_layout, response_layout
+from ..backplane.words import (
+    Operation,
+    broadcast_layout,
+    response_fields,
+    response_layout,
+    response_value,
+)
 from ..triangle_setup.triangle_setup import TriangleSetup
 from .frame_tags import FrameTags
 
@@ -48,7 +54,7 @@ class CentralBroadcastController(wiring.Component):
     scan_start: In(1)
         A scan begins.
     pictures: Out(PictureLines)
-    background: Out(24)
+    background: Out(COLOR_BITS)
         The background of the picture shown: red in the low byte, then green, blue.
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
@@ -61,18 +67,18 @@ class CentralBroadcastController(wiring.Component):
                        if configuration.setup == "hardware" else None)
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
-        self._cycles = Signal(32, name="cycles")
-        self._frame_cycles = Signal(32, name="frame_cycles")
-        self._scans = Signal(32, name="scans")
+        self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
+        self._frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
+        self._scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
         # What the cage is: units that are somebody's, shares that are not as large as they must be,
         # whether the cards can interlace so many units, and the resolution as it is reported.
-        self._owned = Signal(32, name="owned")
+        self._owned = Signal(commands.RESPONSE_VALUE_BITS, name="owned")
         self._unequal = Signal(name="unequal")
         self._supported = Signal(name="supported")
-        self._resolution = Signal(32, name="picture")
+        self._resolution = Signal(commands.RESPONSE_VALUE_BITS, name="picture")
         # Clocks until ``done`` counts the last strobe.
         self._settle = Signal(range(BroadcastLines.settle_clocks + 1), name="settle")
-        self._backgrounds = [Signal(3 * CHANNEL_BITS, name=f"background_{place}")
+        self._backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
                              for place in range(2)]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
@@ -82,7 +88,7 @@ class CentralBroadcastController(wiring.Component):
             "broadcast": Out(BroadcastLines(configuration)),
             "scan_start": In(1),
             "pictures": Out(PictureLines(configuration)),
-            "background": Out(3 * CHANNEL_BITS),
+            "background": Out(COLOR_BITS),
             **({"more": Out(1)} if configuration.observe else {}),
         })
 
@@ -190,7 +196,8 @@ class CentralBroadcastController(wiring.Component):
         with m.State("SURVEYING"), m.If(self._quiet):
             m.next = "REPORT_UNITS"
         with m.State("REPORT_UNITS"):
-            self._respond(m, ResponseKind.UNITS, Cat(self.total | C(0, 16), self._owned[:16]),
+            self._respond(m, ResponseKind.UNITS, response_value(
+                ResponseKind.UNITS, total=self.total, owned=self._owned),
                           "CHECK_UNITS")
         with m.State("CHECK_UNITS"):
             m.next = "INITIALISE"
@@ -296,7 +303,9 @@ class CentralBroadcastController(wiring.Component):
             for interlace in self.configuration.interlaces():
                 with m.Case(interlace.units):
                     m.d.comb += [self._supported.eq(1),
-                                 self._resolution.eq(interlace.height << 16 | interlace.width)]
+                                 self._resolution.eq(commands.response_value(
+                                     ResponseKind.PICTURE, width=interlace.width,
+                                     height=interlace.height))]
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
@@ -305,7 +314,7 @@ class CentralBroadcastController(wiring.Component):
         """
         configuration = self.configuration
         response = self.right.response
-        units = response.payload.value[:16]
+        units = response_fields(ResponseKind.DOMAIN, response.payload.value).units
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
             m.d.sync += self._owned.eq(self._owned + units)

@@ -6,7 +6,7 @@ from typing import Literal
 from amaranth.hdl import *
 from amaranth.lib import data
 
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import COLOR_BITS
 
 __all__ = ["PARTS", "Part", "part_layout", "value_bits"]
 
@@ -39,7 +39,7 @@ PARTS = (
 
 def value_bits(*, depth_bits: int) -> dict[str, int]:
     """Kind of value → its bits, in the order in which ``PARTS`` first has them."""
-    return {"depth": depth_bits, "color": 3 * CHANNEL_BITS}
+    return {"depth": depth_bits, "color": COLOR_BITS}
 
 
 def part_layout(bits: int, tag_bits: int) -> data.StructLayout:

@@ -7,8 +7,12 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.commands import ResponseKind
-from ..backplane.words import Operation, response_layout
+from ...golden.specification.commands import (
+    RESPONSE_FIELDS,
+    RESPONSE_VALUE_BITS,
+    ResponseKind,
+)
+from ..backplane.words import Operation, response_layout, struct_layout
 
 __all__ = ["ProcessingElementControl"]
 
@@ -41,7 +45,7 @@ class ProcessingElementControl(wiring.Component):
         The domain, for the report.
     depths: In(stream of depth words)
         0 while not valid.
-    fragments, busy_cycles: In(32)
+    fragments, busy_cycles: In(RESPONSE_VALUE_BITS)
         The counts to report.
     responses: Out(stream of response_layout)
         0 while not valid.
@@ -69,8 +73,8 @@ class ProcessingElementControl(wiring.Component):
             "first": In(id_bits),
             "end": In(id_bits),
             "depths": In(stream.Signature(depth_bits)),
-            "fragments": In(32),
-            "busy_cycles": In(32),
+            "fragments": In(RESPONSE_VALUE_BITS),
+            "busy_cycles": In(RESPONSE_VALUE_BITS),
             "responses": Out(stream.Signature(response_layout())),
             "idle": Out(1),
         })
@@ -119,8 +123,10 @@ class ProcessingElementControl(wiring.Component):
         # Whoever has nothing to say says 0, so that an or of all is enough, here and in the link.
         units = Signal.like(self.first)
         m.d.comb += units.eq(self.end - self.first)
+        first = struct_layout(RESPONSE_FIELDS[ResponseKind.DOMAIN])["first"]  # above ``units``
         reports = {
-            ResponseKind.DOMAIN: (state.ongoing("REPORT_DOMAIN"), self.first << 16 | units),
+            ResponseKind.DOMAIN: (state.ongoing("REPORT_DOMAIN"),
+                                  self.first << first.offset | units),
             ResponseKind.DEPTH: (self.depths.valid & state.ongoing("READ_BACK"), C(0)),
             ResponseKind.FRAGMENTS: (state.ongoing("REPORT_FRAGMENTS"), self.fragments),
             ResponseKind.BUSY: (state.ongoing("REPORT_BUSY"), self.busy_cycles),

@@ -5,6 +5,7 @@ from amaranth.lib import fifo, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.activity import ACTIVITY_BITS
+from ...golden.specification.commands import RESPONSE_VALUE_BITS
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.queues import SPANS_WAITING, depth_lanes
 from ..backplane.connectors import BroadcastLines, Connector, memory_bus_bits
@@ -26,7 +27,6 @@ from .survey import Survey
 
 __all__ = ["ProcessingElement"]
 
-COUNTER_BITS = 32
 SPANS_LATENCY = 1
 
 
@@ -202,8 +202,8 @@ class ProcessingElement(wiring.Component):
     def _count(self, m):
         """Work since the frame start."""
         control, arriving = self._control, self.depth_test.fragments
-        fragments = Signal(COUNTER_BITS)
-        busy_cycles = Signal(COUNTER_BITS)
+        fragments = Signal(RESPONSE_VALUE_BITS)
+        busy_cycles = Signal(RESPONSE_VALUE_BITS)
         m.d.sync += [
             fragments.eq(fragments + (arriving.valid & arriving.ready)),
             busy_cycles.eq(busy_cycles + control.drawing),

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..arithmetic.limb_products import limb_products, side_by_side
 from ..arithmetic.narrowing import floor_shift, saturate, to_signed
@@ -24,7 +24,7 @@ def fragment_layout(*, id_bits: int, address_bits: int, depth_bits: int) -> data
         "unit": id_bits,
         "address": address_bits,
         "depth": depth_bits,
-        "color": 3 * CHANNEL_BITS,
+        "color": COLOR_BITS,
     })
 
 

@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.queues import OUTLINES_WAITING
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..arithmetic.pipelined_multiplier import PipelinedMultiplier
 from ..backplane.words import struct_layout
@@ -43,7 +43,7 @@ def sorted_triangle_layout(configuration: MachineConfiguration) -> data.StructLa
         "middle_x": signed(bits + 1), "middle_y": bits,
         "lower_x": signed(bits + 1), "lower_y": bits,
         "values": data.StructLayout(values),
-        "color": 3 * CHANNEL_BITS if configuration.shading == "flat" else 0,
+        "color": COLOR_BITS if configuration.shading == "flat" else 0,
     })
 
 

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.words import struct_layout
 
@@ -27,7 +27,7 @@ def sorted_vertices_layout(configuration: MachineConfiguration) -> data.StructLa
     """
     coordinate = signed(configuration.coordinate_bits)
     vertex = data.StructLayout({"x": coordinate, "y": coordinate, **interpolants(configuration)})
-    flat = 3 * CHANNEL_BITS if configuration.shading == "flat" else 0
+    flat = COLOR_BITS if configuration.shading == "flat" else 0
     return data.StructLayout({"upper": vertex, "middle": vertex, "lower": vertex,
                               "least_x": coordinate, "greatest_x": coordinate, "color": flat})
 

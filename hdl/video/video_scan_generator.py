@@ -5,7 +5,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.ranges import CHANNEL_BITS
+from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.connectors import ScanLines
 
@@ -52,7 +52,7 @@ class VideoScanGenerator(wiring.Component):
     Members
     -------
     scan: Out(ScanLines)
-    background: In(24)
+    background: In(COLOR_BITS)
         Shown where nothing has been drawn: red in the low byte, then green, blue.
     start: Out(1)
         High for one clock when a scan begins, with its vertical sync; at least a line before
@@ -69,7 +69,7 @@ class VideoScanGenerator(wiring.Component):
         self.configuration = configuration
         super().__init__({
             "scan": Out(ScanLines(configuration)),
-            "background": In(3 * CHANNEL_BITS),
+            "background": In(COLOR_BITS),
             "start": Out(1),
             "pins": Out(VideoPins()),
         })

@@ -6,7 +6,14 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ...golden.organisations.organisation_of import organisation_of
-from ...golden.specification.commands import OPCODE_BITS, Fault, Opcode, ResponseKind
+from ...golden.specification.commands import (
+    RESPONSE_VALUE_BITS,
+    Fault,
+    Opcode,
+    ResponseKind,
+    opcode_of,
+    response_value,
+)
 from ...golden.specification.configuration import MachineConfiguration
 from .violation import ProtocolError
 
@@ -36,7 +43,7 @@ class ConversationCheck:
         due = len(self._expected)
         self._due_before = [due]
         for number, word in enumerate(commands):
-            opcode = word & ((1 << OPCODE_BITS) - 1)
+            opcode = opcode_of(word)
             self._expected += ([Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, number)]
                                if refused else self._answers(number, opcode))
             if opcode == Opcode.FRAME_END:
@@ -75,13 +82,14 @@ class ConversationCheck:
     def _boot(self) -> Iterator[Expected]:
         organisation = self._organisation
         for domain in organisation.domains:
-            yield Expected(ResponseKind.DOMAIN, domain.first << 16 | domain.units, -1)
-        yield Expected(ResponseKind.UNITS, organisation.owned_units << 16 | organisation.units, -1)
+            yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
+        yield _report(ResponseKind.UNITS, owned=organisation.owned_units,
+                      total=organisation.units)
         if organisation.refused:
             yield Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, -1)
             return
         width, height, *_ = organisation.resolution
-        yield Expected(ResponseKind.PICTURE, height << 16 | width, -1)
+        yield _report(ResponseKind.PICTURE, width=width, height=height)
         yield Expected(ResponseKind.BOOTED, None, -1)
 
     def _answers(self, number: int, opcode: int) -> list[Expected]:
@@ -106,4 +114,9 @@ class ConversationCheck:
             return cycle
         if kind == ResponseKind.FRAME_SHOWN:
             return cycle // self._configuration.cycles_per_scan + 1
-        return (1 << 32) - 1
+        return (1 << RESPONSE_VALUE_BITS) - 1
+
+
+def _report(kind: ResponseKind, **fields: int) -> Expected:
+    """A response of the boot whose value is known."""
+    return Expected(kind, response_value(kind, **fields), -1)

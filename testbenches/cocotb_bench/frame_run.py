@@ -38,7 +38,6 @@ _PORTS = (
     "clk", "rst", "commands__valid", "commands__ready", "commands__payload", "responses__valid",
     "responses__ready", "responses__payload", "pins__pixel", "pins__active",
     "pins__horizontal_sync", "pins__vertical_sync", "pins__red", "pins__green", "pins__blue")
-_OPCODE = (1 << commands.OPCODE_BITS) - 1
 
 
 @cocotb.test()
@@ -156,7 +155,7 @@ class _Bench:
         given = self._stream.sample(self.cycle, valid, self._receive.high, word)
         if taken and self._send.high:
             self._conversation.command(self.cycle)
-            if self.job.commands[self._sent] & _OPCODE == Opcode.FRAME_END:
+            if commands.opcode_of(self.job.commands[self._sent]) == Opcode.FRAME_END:
                 self._ended.append(self.cycle)
             self._sent += 1
             self._offer()
@@ -164,8 +163,7 @@ class _Bench:
             self._send.wait()
         if given:
             assert word is not None  # as the check of the stream found
-            value, kind = divmod(word, 1 << commands.RESPONSE_KIND_BITS)
-            self._respond(kind, value)
+            self._respond(*commands.unpack_response(word))
             self._receive.go()
         else:
             self._receive.wait()

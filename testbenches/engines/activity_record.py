@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.specification.activity import ACTIVITY_BITS, Activity
-from ...golden.specification.commands import OPCODE_BITS, Opcode, ResponseKind
+from ...golden.specification.commands import Opcode, ResponseKind, opcode_of
 
 #: Commands with which a record begins.
 DRAWING = (Opcode.FRAME_START, Opcode.TRIANGLE, Opcode.PREPARED_TRIANGLE)
@@ -108,7 +108,7 @@ class ActivityWatch:
     def clock(self, cycle: int, activity: int, command: int | None,
               response: ResponseKind | None) -> None:
         """``command`` is taken and a ``response`` given in this clock, unless None."""
-        opcode = None if command is None else command & ((1 << OPCODE_BITS) - 1)
+        opcode = None if command is None else opcode_of(command)
         if opcode == Opcode.READ_COUNTERS:
             self._end()
         elif opcode in DRAWING and self._begin is None:

@@ -113,7 +113,6 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
         commands.Opcode.TRIANGLE: commands.triangle_layout(configuration),
         commands.Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout(configuration),
     }
-    kind, value = commands.RESPONSE_KIND_BITS, commands.RESPONSE_VALUE_BITS
     return {
         "version": commands.VERSION,
         "explained_in": "docs/command-words.md",
@@ -126,10 +125,14 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
             for opcode in commands.Opcode
         ],
         "responses": {
-            "bits": kind + value,
-            "fields": [{"name": "kind", "offset": 0, "width": kind},
-                       {"name": "value", "offset": kind, "width": value}],
-            "kinds": [{"name": entry.name, "kind": int(entry)} for entry in commands.ResponseKind],
+            "bits": commands.layout_bits(commands.RESPONSE_LAYOUT),
+            "fields": list(_fields(commands.RESPONSE_LAYOUT, 0)),
+            "kinds": [
+                {"name": kind.name, "kind": int(kind),
+                 "fields": list(_fields(commands.RESPONSE_FIELDS[kind],
+                                        commands.RESPONSE_KIND_BITS))}
+                for kind in commands.ResponseKind
+            ],
             "faults": [{"name": fault.name, "value": int(fault)} for fault in commands.Fault],
         },
     }

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from amaranth.hdl import Const
 from amaranth.lib import data
 from hypothesis import given
 from hypothesis import strategies as st
@@ -160,11 +161,42 @@ def test_triangles_from_set_up(name):
                         % (1 << configuration.channel_plane_bits))
 
 
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_what_is_packed_is_unpacked(name):
+    table = commands.prepared_triangle_layout(CONFIGURATIONS[name])
+    random = np.random.default_rng(5)
+
+    def values(layout):
+        return {field: int.from_bytes(random.bytes(16), "little") % (1 << entry)
+                if isinstance(entry, int) else values(entry) for field, entry in layout.items()}
+
+    chosen = values(table)
+    assert commands.unpack(table, commands.pack(table, chosen)) == chosen
+
+
 def test_responses():
     for kind in ResponseKind:
         assert commands.unpack_response(kind | 0xDEADBEEF << 8) == (kind, 0xDEADBEEF)
-    with pytest.raises(ValueError, match="99"):
-        commands.unpack_response(99)
+    assert commands.unpack_response(99) == (99, 0)
+
+
+@pytest.mark.parametrize("kind", ResponseKind)
+def test_the_value_of_a_response(kind):
+    layout = commands.RESPONSE_FIELDS[kind]
+    assert commands.layout_bits(layout) == commands.RESPONSE_VALUE_BITS
+    fields = {name: 0xC0FFEE + place & (1 << bits) - 1
+              for place, (name, bits) in enumerate(layout.items())}
+    value = commands.response_value(kind, **fields)
+    assert commands.response_fields(kind, value) == fields
+    view = layouts.response_fields(kind, Const(value, 32)).shape().from_bits(value)
+    assert {name: view[name] for name in layout} == fields
+
+
+def test_values_of_two_numbers():
+    """The upper and the lower half."""
+    assert commands.response_value(ResponseKind.DOMAIN, first=3, units=2) == 0x30002
+    assert commands.response_value(ResponseKind.UNITS, owned=3, total=4) == 0x30004
+    assert commands.response_value(ResponseKind.PICTURE, width=16, height=9) == 0x90010
 
 
 def test_opcodes_are_distinct_and_fit():

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from amaranth.hdl import Const
 from amaranth.lib import data
 from hdl_bench.bench import simulate
 from hdl_bench.pictures import exact_words
@@ -179,6 +180,20 @@ def test_response_word():
     assert layout.size == 40
     assert "| 0 … 7 | kind |" in DOCUMENT.read_text(encoding="utf-8")
     assert list(hardware_fields(layout, 0)) == [("kind", 0, 8), ("value", 8, 32)]
+
+
+def documented_fields(value):
+    """(name, first bit, bits) of each field that a cell names, in its order."""
+    fields = [(name, int(first), int(last) - int(first) + 1) for name, first, last in
+              re.findall(r"(\w+) \(bits (\d+) … (\d+)\)", value)]
+    return fields or [(value.split(":")[0], 0, 32)]
+
+
+@pytest.mark.parametrize("kind", ResponseKind)
+def test_response_values(kind):
+    [row] = [row for row in table("kind", "name", "value") if row["name"] == kind.name]
+    fields = layouts.response_fields(kind, Const(0, 32)).shape()
+    assert documented_fields(row["value"]) == list(hardware_fields(fields, 0))
 
 
 @pytest.mark.parametrize(("column", "kinds", "others"), [

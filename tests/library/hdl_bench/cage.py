@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from amaranth.hdl import Value
 
-from cardcage.golden.specification.commands import ResponseKind
+from cardcage.golden.specification.commands import ResponseKind, response_value
 from cardcage.hdl.backplane.connectors import BroadcastLines
 from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.controller.central_broadcast_controller import CentralBroadcastController
@@ -77,7 +77,8 @@ class Cage(Agent):
 
     def answer(self, operation):
         if operation == Operation.SURVEY:
-            return [(ResponseKind.DOMAIN, first << 16 | count) for first, count in self.domains]
+            return [(ResponseKind.DOMAIN, response_value(
+                ResponseKind.DOMAIN, first=first, units=count)) for first, count in self.domains]
         if operation == Operation.READ_DEPTH:
             return [(ResponseKind.DEPTH, depth) for depth in DEPTHS]
         return COUNTS * len(self.domains) if operation == Operation.READ_COUNTERS else []
@@ -188,6 +189,8 @@ def boot_responses(configuration, domains, total=None):
     owned = sum(count for _, count in domains)
     total = configuration.units if total is None else total
     interlace = configuration.interlace
-    return [*((ResponseKind.DOMAIN, first << 16 | count) for first, count in domains),
-            (ResponseKind.UNITS, owned << 16 | total),
-            (ResponseKind.PICTURE, interlace.height << 16 | interlace.width)]
+    reports = [*((ResponseKind.DOMAIN, {"first": first, "units": count})
+                 for first, count in domains),
+               (ResponseKind.UNITS, {"owned": owned, "total": total}),
+               (ResponseKind.PICTURE, {"width": interlace.width, "height": interlace.height})]
+    return [(kind, response_value(kind, **fields)) for kind, fields in reports]

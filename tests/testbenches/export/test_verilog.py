@@ -147,6 +147,10 @@ def test_description(texts):
     [response] = [port for port in facts["ports"] if port["name"] == "responses__payload"]
     assert response["fields"] == [{"name": "kind", "offset": 0, "width": 8},
                                   {"name": "value", "offset": 8, "width": 32}]
+    kinds = {kind["name"]: kind["fields"] for kind in facts["commands"]["responses"]["kinds"]}
+    assert kinds["PICTURE"] == [{"name": "width", "offset": 8, "width": 16},
+                                {"name": "height", "offset": 24, "width": 16}]
+    assert kinds["DEPTH"] == [{"name": "depth", "offset": 8, "width": 32}]
     formats = {entry["name"]: entry for entry in facts["number_formats"]}
     assert formats["depth_plane"]["bits"] == configuration.depth_plane_bits
     assert formats["depth_plane"]["fraction_bits"] == 50
