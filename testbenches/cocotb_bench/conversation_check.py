@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.commands import (
     RESPONSE_VALUE_BITS,
-    Fault,
     Opcode,
     ResponseKind,
     opcode_of,
-    response_value,
 )
 from ...golden.specification.configuration import MachineConfiguration
+from ..frames.conversation import owed_at_boot, owed_to
 from .violation import ProtocolError
 
 
@@ -37,16 +36,13 @@ class ConversationCheck:
 
     def __init__(self, configuration: MachineConfiguration, commands: Sequence[int]) -> None:
         self._configuration = configuration
-        self._organisation = organisation_of(configuration)
-        self._expected = list(self._boot())
-        refused = self._expected[-1].kind == ResponseKind.ERROR
+        organisation = organisation_of(configuration)
+        self._expected = [Expected(*owed, -1) for owed in owed_at_boot(organisation)]
         due = len(self._expected)
         self._due_before = [due]
         for number, word in enumerate(commands):
-            opcode = opcode_of(word)
-            self._expected += ([Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, number)]
-                               if refused else self._answers(number, opcode))
-            if opcode == Opcode.FRAME_END:
+            self._expected += [Expected(*owed, number) for owed in owed_to(organisation, word)]
+            if opcode_of(word) == Opcode.FRAME_END:
                 due = len(self._expected)
             self._due_before.append(due)
         self._sent = self._received = 0
@@ -79,32 +75,6 @@ class ConversationCheck:
             raise ProtocolError(f"{got}; {expected.kind.name} cannot be that large")
         self._received += 1
 
-    def _boot(self) -> Iterator[Expected]:
-        organisation = self._organisation
-        for domain in organisation.domains:
-            yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
-        yield _report(ResponseKind.UNITS, owned=organisation.owned_units,
-                      total=organisation.units)
-        if organisation.refused:
-            yield Expected(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, -1)
-            return
-        width, height, *_ = organisation.resolution
-        yield _report(ResponseKind.PICTURE, width=width, height=height)
-        yield Expected(ResponseKind.BOOTED, None, -1)
-
-    def _answers(self, number: int, opcode: int) -> list[Expected]:
-        if opcode in (Opcode.FRAME_START, Opcode.PREPARED_TRIANGLE):
-            return []
-        if opcode == Opcode.FRAME_END:
-            kinds = [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN]
-        elif opcode == Opcode.READ_DEPTH:
-            kinds = [ResponseKind.DEPTH] * self._organisation.depths_read_back
-        elif opcode == Opcode.READ_COUNTERS:
-            kinds = [ResponseKind.FRAGMENTS, ResponseKind.BUSY] * len(self._organisation.domains)
-        else:
-            return [Expected(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, number)]
-        return [Expected(kind, None, number) for kind in kinds]
-
     def _limit(self, kind: ResponseKind, cycle: int) -> int:
         """The largest value: what a word holds, or the clocks and scans there have been."""
         if kind == ResponseKind.DEPTH:
@@ -115,8 +85,3 @@ class ConversationCheck:
         if kind == ResponseKind.FRAME_SHOWN:
             return cycle // self._configuration.cycles_per_scan + 1
         return (1 << RESPONSE_VALUE_BITS) - 1
-
-
-def _report(kind: ResponseKind, **fields: int) -> Expected:
-    """A response of the boot whose value is known."""
-    return Expected(kind, response_value(kind, **fields), -1)

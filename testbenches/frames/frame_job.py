@@ -14,6 +14,7 @@ from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ..engines.engine import Job
+from .conversation import responses_owed
 
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
@@ -52,13 +53,10 @@ def frame_job(
     """Everything an engine needs to run one frame with depths and counters read back."""
     words = [*frame_commands(configuration, display_list, fraction_bits),
              commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
-    organisation = organisation_of(configuration)
-    elements, depths = len(organisation.domains), organisation.depths_read_back
-    boot = elements + 3  # domains, units, picture, booted
     return Job(
         configuration=configuration,
         commands=words,
-        responses=boot + 2 + depths + 2 * elements,
+        responses=responses_owed(organisation_of(configuration), words),
         memory_seed=memory_seed,
         stall_seed=stall_seed,
         waveform=waveform,

@@ -1,4 +1,4 @@
-"""What a machine answered, understood: one frame, as it left the machine."""
+"""What a machine answered, understood: frames, as they left the machine."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.organisations.organisation_of import organisation_of
-from ...golden.specification.commands import ResponseKind
+from ...golden.specification.commands import ResponseKind, response_fields
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import EngineRun, Scan
@@ -24,7 +24,6 @@ class MachineError(RuntimeError):
     cardcage.testbenches.frames.responses.MachineError: the machine hangs
     """
 
-
 @dataclass(frozen=True)
 class Work:
     """What one processing element owns and did for the last frame, in its own count."""
@@ -33,7 +32,6 @@ class Work:
     units: int
     fragments: int
     busy_cycles: int
-
 
 
 @dataclass(frozen=True)
@@ -71,37 +69,67 @@ class Simulation:
     activity: ActivityRecord | None = None
 
 
+class Answers:
+    """Everything a machine answered in a run, by what it means: its boot, frames one after another,
+    and the counters, as often as they were read.
 
-def interpret(configuration: MachineConfiguration, run: EngineRun) -> Simulation:
-    values: dict[ResponseKind, list[int]] = {kind: [] for kind in ResponseKind}
-    for kind, value, _ in run.responses:
-        values[kind].append(value)
-    if values[ResponseKind.ERROR]:
-        raise MachineError(f"the machine reports fault {values[ResponseKind.ERROR][0]}")
-    organisation = organisation_of(configuration)
-    expected, picture = organisation.resolution[:2], values[ResponseKind.PICTURE][0]
-    resolution = picture & 0xFFFF, picture >> 16
-    if resolution != expected:
-        raise MachineError("the machine draws {}x{}, expected {}x{}".format(*resolution, *expected))
-    domains = [(value >> 16, value & 0xFFFF) for value in values[ResponseKind.DOMAIN]]
-    units = values[ResponseKind.UNITS][0]
-    return Simulation(
-        video=run.scans[-1].picture,
-        depth=organisation.depth_image(values[ResponseKind.DEPTH]),
-        resolution=resolution,
-        work=[Work(first, count, fragments, busy) for (first, count), fragments, busy in
-              zip(domains, values[ResponseKind.FRAGMENTS], values[ResponseKind.BUSY],
-                  strict=True)],
-        owned=units >> 16,
-        total=units & 0xFFFF,
-        boot_cycles=values[ResponseKind.BOOTED][0],
-        draw_cycles=values[ResponseKind.FRAME_DRAWN][0],
-        repeated_scans=values[ResponseKind.FRAME_SHOWN][0],
-        scans=run.scans,
-        engine=run.engine,
-        cycles=run.cycles,
-        seconds=run.seconds,
-        build_seconds=run.build_seconds,
-        notes=run.notes,
-        activity=run.activity[0] if run.activity else None,
-    )
+    ``frames``     how many were drawn
+    ``fragments``  int64 (readings, elements): since each reading's frame start
+    ``busy``       int64 (readings, elements): cycles, likewise
+
+    Raises ``MachineError`` where the machine reports a fault, or a resolution that is not the
+    configuration's.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, run: EngineRun) -> None:
+        self._organisation = organisation = organisation_of(configuration)
+        self._run = run
+        self._values: dict[ResponseKind, list[int]] = {kind: [] for kind in ResponseKind}
+        self._cycles: dict[ResponseKind, list[int]] = {kind: [] for kind in ResponseKind}
+        for kind, value, cycle in run.responses:
+            self._values[kind].append(value)
+            self._cycles[kind].append(cycle)
+        for fault in self._fields(ResponseKind.ERROR):
+            raise MachineError(f"the machine reports fault {fault['fault']}")
+        [picture] = self._fields(ResponseKind.PICTURE)
+        self._resolution = picture["width"], picture["height"]
+        if self._resolution != organisation.resolution[:2]:
+            raise MachineError("the machine draws {}x{}, expected {}x{}".format(
+                *self._resolution, *organisation.resolution[:2]))
+        self._domains = self._fields(ResponseKind.DOMAIN)
+        self.frames = len(self._values[ResponseKind.FRAME_DRAWN])
+        self.fragments, self.busy = (
+            np.array(self._values[kind], np.int64).reshape(-1, len(self._domains))
+            for kind in (ResponseKind.FRAGMENTS, ResponseKind.BUSY))
+
+    def _fields(self, kind: ResponseKind) -> list[dict[str, int]]:
+        return [response_fields(kind, value) for value in self._values[kind]]
+
+    def frame(self, number: int, reading: int) -> Simulation:
+        """Of the frames, each of whose depths was read back once; with the work that a reading of
+        the counters says, and the record of activity that ends with it, if the engine keeps any."""
+        run, organisation = self._run, self._organisation
+        words = organisation.depths_read_back
+        shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
+        [units] = self._fields(ResponseKind.UNITS)
+        return Simulation(
+            video=next(scan.picture for scan in run.scans if scan.cycle > shown),
+            depth=organisation.depth_image(
+                self._values[ResponseKind.DEPTH][words * number:words * (number + 1)]),
+            resolution=self._resolution,
+            work=[Work(domain["first"], domain["units"], int(fragments), int(busy))
+                  for domain, fragments, busy in zip(
+                      self._domains, self.fragments[reading], self.busy[reading], strict=True)],
+            owned=units["owned"],
+            total=units["total"],
+            boot_cycles=self._values[ResponseKind.BOOTED][0],
+            draw_cycles=self._values[ResponseKind.FRAME_DRAWN][number],
+            repeated_scans=self._values[ResponseKind.FRAME_SHOWN][number],
+            scans=run.scans,
+            engine=run.engine,
+            cycles=run.cycles,
+            seconds=run.seconds,
+            build_seconds=run.build_seconds,
+            notes=run.notes,
+            activity=run.activity[reading] if run.activity else None,
+        )

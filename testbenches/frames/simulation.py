@@ -12,7 +12,7 @@ from ..engines.choose_engine import AUTO, make_engine
 from ..engines.engine import Engine, Progress
 from ..engines.verilator_tool import ToolMissingError
 from .frame_job import frame_job
-from .responses import MachineError, Simulation, interpret
+from .responses import Answers, MachineError, Simulation
 
 
 def simulate(
@@ -32,7 +32,7 @@ def simulate(
     """
     job = frame_job(configuration, display_list, memory_seed=memory_seed, stall_seed=stall_seed,
                     waveform=waveform, fraction_bits=fraction_bits)
-    return interpret(configuration, engine.run(job, progress))
+    return Answers(configuration, engine.run(job, progress)).frame(0, reading=0)
 
 
 def simulate_frame(configuration: MachineConfiguration, display_list: DisplayList, *,

@@ -16,24 +16,27 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification import commands
-from ...golden.specification.commands import Opcode, ResponseKind
+from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import Engine, EngineRun, Job, Progress
 from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import compare
+from ..frames.conversation import responses_owed
 from ..frames.frame_job import cycle_bound, frame_commands
-from ..frames.responses import MachineError, Simulation, Work
+from ..frames.responses import Answers, MachineError
 from .cases import CaseLists, Order
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
 _READ_DEPTH = commands.command(Opcode.READ_DEPTH)
+
+#: How often a frame's counters are read.
+_READINGS = 3
 
 
 @dataclass(frozen=True)
@@ -126,10 +129,8 @@ def measure(configuration: MachineConfiguration, cases: Sequence[CaseLists], eng
         raise InputError(f"--engine {engine.name}: {missing}; or use --engine model") from None
     except (TimeoutError, AssertionError) as error:
         raise MachineError(f"the machine failed: {error}") from error
-    responses = _by_kind(run)
-    if len(faults := responses[ResponseKind.ERROR][0]):
-        raise MachineError(f"the machine reports fault {faults[0]}")
-    return [_measurement(configuration, frame, number, run, responses)
+    answers = Answers(configuration, run)
+    return [_measurement(configuration, frame, number, run, answers)
             for number, frame in enumerate(frames)]
 
 
@@ -143,57 +144,22 @@ def _job(configuration: MachineConfiguration,
         frames.append(_Frame(case, len(words), len(once), len(twice)))
         words += [start, _READ_COUNTERS, *once, _READ_COUNTERS, *twice, _READ_COUNTERS, end,
                   _READ_DEPTH]
-    organisation = organisation_of(configuration)
-    elements, depths = len(organisation.domains), organisation.depths_read_back
     return Job(
         configuration=configuration,
         commands=words,
-        responses=elements + 3 + len(cases) * (3 * 2 * elements + 2 + depths),
+        responses=responses_owed(organisation_of(configuration), words),
         memory_seed=1,
         maximum_cycles=len(cases) * cycle_bound(configuration, words),
     ), frames
 
 
-#: Values and the cycles they came in, of the responses of one kind.
-_Responses = tuple[NDArray[np.int64], NDArray[np.int64]]
-
-
-def _by_kind(run: EngineRun) -> dict[ResponseKind, _Responses]:
-    found: dict[ResponseKind, list[tuple[int, int]]] = {kind: [] for kind in ResponseKind}
-    for kind, value, cycle in run.responses:
-        found[kind].append((value, cycle))
-    return {kind: (np.array([value for value, _ in pairs], np.int64),
-                   np.array([cycle for _, cycle in pairs], np.int64))
-            for kind, pairs in found.items()}
-
-
 def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int, run: EngineRun,
-                 responses: dict[ResponseKind, _Responses]) -> Measurement:
-    organisation, case = organisation_of(configuration), frame.case
-    elements = len(organisation.domains)
-    counts = responses[ResponseKind.FRAGMENTS][0].reshape(-1, 3, elements)[number]
-    busy = responses[ResponseKind.BUSY][0].reshape(-1, 3, elements)[number, -1]
-    depths = responses[ResponseKind.DEPTH][0]
-    words = depths.reshape(-1, organisation.depths_read_back)[number]
-    shown = responses[ResponseKind.FRAME_SHOWN][1][number]
-    simulation = Simulation(
-        video=next(scan.picture for scan in run.scans if scan.cycle > shown),
-        depth=organisation.depth_image(words),
-        resolution=organisation.resolution[:2],
-        work=[Work(domain.first, domain.units, int(fragments), int(cycles))
-              for domain, fragments, cycles
-              in zip(organisation.domains, counts[-1], busy, strict=True)],
-        owned=organisation.owned_units,
-        total=configuration.units,
-        boot_cycles=int(responses[ResponseKind.BOOTED][0][0]),
-        draw_cycles=int(responses[ResponseKind.FRAME_DRAWN][0][number]),
-        repeated_scans=int(responses[ResponseKind.FRAME_SHOWN][0][number]),
-        scans=run.scans,
-        engine=run.engine,
-        cycles=run.cycles,
-        seconds=run.seconds,
-    )
-    shifts = organisation.resolution.shifts
+                 answers: Answers) -> Measurement:
+    case = frame.case
+    # Each record of activity, too, ends as the counters are read.
+    readings = range(_READINGS * number, _READINGS * (number + 1))
+    simulation = answers.frame(number, reading=readings[-1])
+    shifts = organisation_of(configuration).resolution.shifts
     fragments = [int(depth_complexity(part, **shifts).sum()) for part in (case.once, case.twice)]
     where = f"{case.name}, {case.order} order, on {configuration.cards}"
     comparison = compare(configuration, case.frame, simulation)
@@ -201,14 +167,13 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
         raise DifferentError(
             f"{where}: {comparison.pixels_different:,} colours and {comparison.depths_different:,} "
             f"depths differ from the golden picture, first at {first.pixel}")
+    counts = answers.fragments[readings.start:readings.stop]
     drawn = np.diff(counts.sum(axis=1))
     if drawn.tolist() != fragments:
         raise DifferentError(f"{where}: {drawn.tolist()} fragments drawn, not {fragments}")
     assert run.accepted is not None
     once, twice = (int(run.accepted[barrier] - run.accepted[first])
                    for first, barrier in zip(frame.first, frame.barriers, strict=True))
-    seconds = run.seconds / len(responses[ResponseKind.FRAME_DRAWN][0])
-    # One record until the first counters, the clear; then one for each of the two.
-    activity = run.activity[3 * number + 2] if run.activity else None
     return Measurement(case.name, case.order, case.once.triangles, fragments[0], once, twice,
-                       tuple((counts[2] - counts[1]).tolist()), seconds, activity)
+                       tuple((counts[-1] - counts[-2]).tolist()), run.seconds / answers.frames,
+                       simulation.activity)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -147,6 +149,14 @@ def changed(place, word):
 def test_a_conversation_that_is_not(words, message):
     with pytest.raises(ProtocolError, match=message):
         talk(words)
+
+
+@pytest.mark.parametrize("setup", ["host", "hardware"])
+def test_vertices_are_for_machines_with_set_up(setup):
+    """Others do not know the command."""
+    machine = replace(TINY, setup=setup)
+    refusal = [(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)] if setup == "host" else []
+    assert talk([*BOOT, None, *refusal], machine, [Opcode.TRIANGLE]).complete
 
 
 def test_depths_are_in_range():
