@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..golden.organisations.organisation_of import organisation_of
-from ..golden.reference.exact import depth_complexity
+from ..golden.cycles.frame_clocks import predict_frame
 from ..golden.scene_display_list import SceneDisplayList
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
@@ -18,6 +17,7 @@ from .engines.engine import Progress
 from .frames.compare import compare
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
+from .frames.setup_timing import setup_timing
 from .frames.simulation import simulate_frame
 from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
 from .support.atomic_output import atomic_file, atomic_folder, output_errors
@@ -50,19 +50,9 @@ class RenderJob:
     began: float
 
     def expected_cycles(self) -> int:
-        """A guess, within a third or so, at what the simulation takes: for the progress bar."""
-        configuration = self.configuration
-        organisation = organisation_of(configuration)
-        display_list = self.scene.display_list
-        fragments = int(depth_complexity(display_list, **organisation.resolution.shifts).sum())
-        boot = 100 + organisation.words
-        # Either memory or the broadcast of triangles is the bottleneck.
-        clocks = 2.5 if configuration.memory_ports == 1 else 1.2
-        draw = max(clocks * fragments / configuration.processing_elements,
-                   2.8 * display_list.triangles)
-        scan = configuration.cycles_per_scan
-        # The picture is shown from the scan after it is drawn, and that one is watched whole.
-        return (int(boot + draw) // scan + 2) * scan
+        """About what the simulation takes: for the progress bar."""
+        return predict_frame(self.configuration, self.scene.display_list,
+                             setup_timing(self.configuration)).total
 
     def run(self, out: Path | None = None, waveform: Path | None = None,
             progress: Progress | None = None) -> Rendering:

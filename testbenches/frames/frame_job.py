@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
+from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference import triangle_words
@@ -40,7 +40,6 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     return [start, *triangle_words.prepared_triangles(configuration, prepared), end]
 
 
-
 def frame_job(
     configuration: MachineConfiguration,
     display_list: DisplayList,
@@ -60,20 +59,5 @@ def frame_job(
         memory_seed=memory_seed,
         stall_seed=stall_seed,
         waveform=waveform,
-        maximum_cycles=cycle_bound(configuration, words),
+        maximum_cycles=most_frame_clocks(configuration, len(words)),
     )
-
-
-
-def cycle_bound(configuration: MachineConfiguration, words: Sequence[int]) -> int:
-    """More cycles than any frame can take: beyond, the machine hangs.
-
-    Every triangle waits for three divisions and covers the screen, every pixel costs a scan slot,
-    a read and a write; then the stalls of the most patient host, and some scans.
-    """
-    pixels = configuration.width * configuration.height
-    divisions = 3 * configuration.setup_interval
-    return (1000 + (len(words) + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)
-            + 30 * organisation_of(configuration).depths_read_back
-            + 4 * configuration.cycles_per_scan)
-

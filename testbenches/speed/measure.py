@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification import commands
@@ -28,7 +29,7 @@ from ..engines.engine import Engine, EngineRun, Job, Progress
 from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import compare
 from ..frames.conversation import responses_owed
-from ..frames.frame_job import cycle_bound, frame_commands
+from ..frames.frame_job import frame_commands
 from ..frames.responses import Answers, MachineError
 from .cases import CaseLists, Order
 
@@ -149,7 +150,7 @@ def _job(configuration: MachineConfiguration,
         commands=words,
         responses=responses_owed(organisation_of(configuration), words),
         memory_seed=1,
-        maximum_cycles=len(cases) * cycle_bound(configuration, words),
+        maximum_cycles=len(cases) * most_frame_clocks(configuration, len(words)),
     ), frames
 
 

@@ -6,15 +6,12 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 
-from amaranth.hdl import Fragment
-
-from ...golden.cycles.cycle_model import CyclePrediction, SetupTiming, predict_cycles
+from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
 from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.triangle_setup.triangle_setup import TriangleSetup
 from ..engines.engine import Engine
+from ..frames.setup_timing import setup_timing
 from .cases import CaseLists, Order, case_lists
 from .machines import BenchMachine
 from .measure import Measurement, measure
@@ -92,17 +89,6 @@ def steps(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
     return len(machines) * -(-len(cases) * len(orders) // _TOGETHER)
 
 
-@cache
-def _setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
-    """What the machine's own set-up says of itself."""
-    if configuration.setup == "host":
-        return None
-    unit = TriangleSetup(configuration=configuration)
-    Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
-    return SetupTiming(interval=unit.interval, latency=unit.preparation,
-                       inside=unit.depth, leaving=unit.leaving)
-
-
 def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> int:
     """How often the list must be repeated, so that every unit is scanned about as often."""
     if prediction.binding != "busiest port":
@@ -114,7 +100,7 @@ def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> 
 def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, BenchRow]:
     """``case``, longer where it must be, and what the model says of that."""
     configuration = machine.configuration
-    setup = _setup_timing(configuration)
+    setup = setup_timing(configuration)
     began = time.perf_counter()
     once = predict_cycles(configuration, case.once, setup=setup)
     if (times := _times(configuration, once)) > 1:

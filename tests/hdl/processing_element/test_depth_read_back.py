@@ -5,6 +5,7 @@ from hdl_bench.bench import Drive, Service, simulate
 from hdl_bench.memory import MemoryBusModel
 from hdl_bench.streams import Sink, no_pause, pauses
 
+from cardcage.golden.cycles.frame_clocks import READ_BACK
 from cardcage.hdl.processing_element.depth_read_back import DepthReadBack
 
 WORDS = 16
@@ -43,7 +44,7 @@ def test_units_in_order_addresses_ascending(first, end, words, seed):
 def test_latency_and_throughput():
     service, sink, memory = read_back(0, 4, 16)
     reads = [read[0] for read in memory.reads]
-    assert reads == list(range(1, 129, 2))
+    assert reads == list(range(1, 1 + 64 * READ_BACK, READ_BACK))
     assert sink.clocks == [clock + DepthReadBack.latency for clock in reads]
     # Done in the clock in which the last word is taken.
     assert service.ended == [sink.clocks[-1]]

@@ -7,6 +7,7 @@ from hdl_bench.bench import Drive, Service, simulate
 from hdl_bench.memory import MemoryBusModel
 from hdl_bench.streams import no_pause, pauses
 
+from cardcage.golden.cycles.frame_clocks import SURVEY_END, SURVEYED_UNIT
 from cardcage.hdl.processing_element.survey import Survey
 
 
@@ -30,7 +31,7 @@ def survey(first, end, total, *, depth_bits=8, scan=0.0, seed=0, rounds=1, pause
 def cost(first, end, total):
     """Clocks after the start: write, read, compare and decide twice a unit, once at the one that
     is silent, one clock to see that there are no more."""
-    return 8 * (end - first) + (1 if end == total else 4)
+    return SURVEYED_UNIT * (end - first) + (1 if end == total else SURVEY_END)
 
 
 @pytest.mark.parametrize("total", [1, 2, 5, 8, 16])
