@@ -26,6 +26,22 @@ MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
 
+#: Field of a configuration → least and greatest value, where these depend on no other field; besides
+#: ``FORMAT_RANGES``.
+RANGES = {
+    "fraction_bits": (0, MAX_FRACTION_BITS),
+    "words": (0, MAXIMUM_WORDS),
+    "maximum_units": (0, MAXIMUM_SIZE),
+    "fifo_depth": (2, 4096),
+    "block": (1, MAXIMUM_BLOCK),
+    "memory_ports": (1, 2),
+    "tag_bits": (MINIMUM_TAG_BITS, MAXIMUM_TAG_BITS),
+    "clocks_per_pixel": (2, 256),
+    "setup_interval": (1, MAXIMUM_SETUP_INTERVAL),
+    "depth_integer_bits": (0, 64),
+    "channel_integer_bits": (0, 64),
+}
+
 
 @dataclass(frozen=True)
 class MachineConfiguration:
@@ -113,19 +129,7 @@ class MachineConfiguration:
             check_whole(name, getattr(self, name), low, high)
         if self.fraction_bits is None:
             fix("fraction_bits", on_screen_fraction_bits(self.width, self.height, self.sub_bits))
-        for name, low, high in (
-            ("fraction_bits", 0, MAX_FRACTION_BITS),
-            ("words", 0, MAXIMUM_WORDS),
-            ("maximum_units", 0, MAXIMUM_SIZE),
-            ("fifo_depth", 2, 4096),
-            ("block", 1, MAXIMUM_BLOCK),
-            ("memory_ports", 1, 2),
-            ("tag_bits", MINIMUM_TAG_BITS, MAXIMUM_TAG_BITS),
-            ("clocks_per_pixel", 2, 256),
-            ("setup_interval", 1, MAXIMUM_SETUP_INTERVAL),
-            ("depth_integer_bits", 0, 64),
-            ("channel_integer_bits", 0, 64),
-        ):
+        for name, (low, high) in RANGES.items():
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
             raise InputError(f"shading: {self.shading!r} is neither flat nor gouraud")

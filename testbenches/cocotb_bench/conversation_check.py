@@ -78,7 +78,7 @@ class ConversationCheck:
     def _limit(self, kind: ResponseKind, cycle: int) -> int:
         """The largest value: what a word holds, or the clocks and scans there have been."""
         if kind == ResponseKind.DEPTH:
-            return (1 << self._configuration.depth_bits) - 1
+            return self._configuration.depth_background
         if kind in (ResponseKind.BOOTED, ResponseKind.FRAME_DRAWN, ResponseKind.BUSY,
                     ResponseKind.FRAGMENTS):
             return cycle

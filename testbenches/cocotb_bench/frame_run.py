@@ -18,6 +18,7 @@ from cocotb.triggers import FallingEdge, ReadOnly
 
 from ...golden.specification import commands
 from ...golden.specification.commands import Opcode, ResponseKind
+from ...golden.specification.ranges import CHANNEL_BITS
 from ..engines.engine import Job
 from ..engines.host_pauses import Pace
 from ..engines.video_monitor import VideoMonitor
@@ -32,7 +33,7 @@ RESET_CLOCKS = 3
 PROGRESS_CYCLES = 1024
 
 #: Clocks from a memory unit's read to the pins, and how long a pixel stays there, at most.
-_PIN_LATENCY = 4
+PIN_LATENCY = 4
 _PIXELS_HELD = 2
 _PORTS = (
     "clk", "rst", "commands__valid", "commands__ready", "commands__payload", "responses__valid",
@@ -181,7 +182,7 @@ class _Bench:
         """The cycle from which no pixel on the pins was read before the pictures were black."""
         assert self._booted is not None
         held = _PIXELS_HELD * self.job.configuration.clocks_per_pixel
-        return self._booted + _PIN_LATENCY + held
+        return self._booted + PIN_LATENCY + held
 
     def _watch_pins(self) -> bool:
         """Whether this was the first clock of a pixel."""
@@ -190,7 +191,7 @@ class _Bench:
         channels = [_level(pin) for pin in (dut.pins__red, dut.pins__green, dut.pins__blue)]
         known = [level for level in channels if level is not None]
         color = None if len(known) < len(channels) else sum(
-            level << 8 * place for place, level in enumerate(known))
+            level << CHANNEL_BITS * place for place, level in enumerate(known))
         pins = Pins(_level(dut.pins__active), _level(dut.pins__horizontal_sync),
                     _level(dut.pins__vertical_sync), color)
         self._pins.sample(self.cycle, pixel, pins)

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from ...golden.planning.presets import PRESETS
-from ...golden.specification.configuration import MAXIMUM_BLOCK, MAXIMUM_WORDS
+from ...golden.specification.configuration import MAXIMUM_WORDS, RANGES
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
 from ..machine_options import SETUPS
@@ -84,12 +84,12 @@ _FURTHER_OPTIONS = (
     click.option("--words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
                  help="Words of each memory unit; too few make the picture coarser.  "
                  "[default: what the size needs]"),
-    click.option("--clocks-per-pixel", type=click.IntRange(2, 256), metavar="N",
-                 help="Clocks a pixel lasts on the video output.  [default: 2]"),
-    click.option("--memory-ports", type=click.IntRange(1, 2), metavar="1|2",
+    click.option("--clocks-per-pixel", type=click.IntRange(*RANGES["clocks_per_pixel"]),
+                 metavar="N", help="Clocks a pixel lasts on the video output.  [default: 2]"),
+    click.option("--memory-ports", type=click.IntRange(*RANGES["memory_ports"]), metavar="1|2",
                  help="Ports of each memory unit's RAM: one for all as in 1979, or one to read and "
                  "one to write, as FPGAs have.  [default: 1]"),
-    click.option("--block", type=click.IntRange(1, MAXIMUM_BLOCK), metavar="N",
+    click.option("--block", type=click.IntRange(*RANGES["block"]), metavar="N",
                  help="Interlace processing elements in squares of NxN pixels, N a power of two; "
                  "each wants as many memory units.  1 interlaces pixel by pixel, as in 1979, in "
                  "any shares.  [default: 1]"),

@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from ...golden.specification.configuration import RANGES
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import ENGINES, make_engine
 from ..machine_options import SETUPS
@@ -35,15 +36,17 @@ def _numbers(least: int, most: int) -> Several:
 @click.argument("cases", nargs=-1, metavar="[CASE]...")
 @click.option("--elements", type=_numbers(1, 4096), help="Processing elements.  [default: 1,16]")
 @click.option("--units", type=_numbers(1, 64), help="Memory units of each.  [default: 2]")
-@click.option("--ports", type=_numbers(1, 2), help="Ports of a memory unit.  [default: 2]")
+@click.option("--ports", type=_numbers(*RANGES["memory_ports"]),
+              help="Ports of a memory unit.  [default: 2]")
 @click.option("--setup", "setups", type=Several(click.Choice(list(SETUPS)), "WHO,…"),
               help="Who prepares the triangles: host, small or fast hardware.  [default: host]")
-@click.option("--block", "blocks", type=_numbers(1, 32), help="Pixels a side that neighbour in "
-              "one processing element; 1 interlaces pixel by pixel.  [default: 1]")
+@click.option("--block", "blocks", type=_numbers(*RANGES["block"]),
+              help="Pixels a side that neighbour in one processing element; 1 interlaces pixel by "
+              "pixel.  [default: 1]")
 @click.option("--skew/--no-skew", default=None, help="Whether two units of a processing element "
               "alternate along its rows, not only from row to row; wants --block 1.  [default: "
               "where they have one port]")
-@click.option("--fifo", "fifos", type=_numbers(2, 4096),
+@click.option("--fifo", "fifos", type=_numbers(*RANGES["fifo_depth"]),
               help="Triangles a processing element holds in waiting.  [default: 16]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
               help="Of depths: visible draws each triangle before those drawn earlier, random "

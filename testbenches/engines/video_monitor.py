@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...golden.specification.commands import CHANNELS, unpack
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.ranges import CHANNEL_BITS
 from .engine import Scan
 
 
@@ -51,7 +53,8 @@ class VideoMonitor:
                 f"a scan of {len(self._pixels)} pixels")
             packed = np.array(self._pixels, np.uint32).reshape(timing.vertical_active,
                                                                timing.horizontal_active)
-            picture = np.stack([packed, packed >> 8, packed >> 16], axis=-1).astype(np.uint8)
+            channels = unpack(dict.fromkeys(CHANNELS, CHANNEL_BITS), packed)
+            picture = np.stack(list(channels.values()), axis=-1).astype(np.uint8)
             self.scans.append(Scan(self._first_cycle, picture))
         self._synchronised = True
         self._pixels = []

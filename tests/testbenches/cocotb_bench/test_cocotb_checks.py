@@ -9,6 +9,8 @@ import pytest
 
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.hdl.video.video_scan_generator import VideoScanGenerator
+from cardcage.testbenches.cocotb_bench import frame_run
 from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck
 from cardcage.testbenches.cocotb_bench.pin_check import PinCheck, Pins
 from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels
@@ -125,6 +127,11 @@ def test_a_conversation_as_documented():
     depths = talk([*BOOT, None, *[(ResponseKind.DEPTH, (1 << 24) - 1)] * 16],
                   commands=[Opcode.READ_DEPTH])
     assert depths.complete
+
+
+def test_the_way_from_a_read_to_the_pins_is_the_video_scan_generators():
+    """A unit reads in the clock after its pixel was announced."""
+    assert VideoScanGenerator.latency - 1 == frame_run.PIN_LATENCY
 
 
 def changed(place, word):
