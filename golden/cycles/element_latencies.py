@@ -1,7 +1,7 @@
 """The facts of a processing element's pipeline that the cycle model goes by.
 
 The golden models do not import the hardware, so the clocks are said here once more;
-``tests/machine/test_cycle_constants.py`` holds them to what its components state.
+``tests/hdl/test_cycle_constants.py`` holds them to what its components state.
 """
 
 from __future__ import annotations

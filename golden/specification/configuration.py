@@ -26,8 +26,7 @@ MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
 
-#: Field of a configuration → least and greatest value, where these depend on no other field; besides
-#: ``FORMAT_RANGES``.
+#: Field → least and greatest value, besides ``FORMAT_RANGES``, where they depend on no other field.
 RANGES = {
     "fraction_bits": (0, MAX_FRACTION_BITS),
     "words": (0, MAXIMUM_WORDS),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from wide_machines import wide_machine
 
 from cardcage.golden.cycles.frame_clocks import (
     DIVISIONS,
@@ -11,7 +12,6 @@ from cardcage.golden.cycles.frame_clocks import (
     most_frame_clocks,
     predict_frame,
 )
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.hdl.processing_element.depth_read_back import DepthReadBack
 from cardcage.hdl.triangle_setup.plane_setup import Slot
@@ -29,7 +29,7 @@ SETUP = {"setup": "hardware", "setup_interval": 256}
 @pytest.mark.parametrize(("cards", "options"), [
     ("PM", {}), ("2x(PMM)", {"memory_ports": 2}), ("PMPMMM", {}), ("2x(PM)", SETUP)])
 def test_a_frame(cards, options):
-    machine = configure(LIST, cards=cards, clocks_per_pixel=2, **options)
+    machine = wide_machine(LIST, cards=cards, clocks_per_pixel=2, **options)
     job = frame_job(machine, LIST)
     run = PysimEngine().run(job)
     found = Answers(machine, run).frame(0, reading=0)

@@ -11,11 +11,11 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from cycle_lists import scene
+from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import SetupTiming, predict_cycles
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
 from cardcage.golden.cycles.one_port_lanes import LANE_START
-from cardcage.golden.planning.machines import configure
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -86,7 +86,7 @@ LISTS = [ending_large(1, 1, 8), ending_large(4, 40, 2)]
 
 def machine_of_several_blocks() -> MachineConfiguration:
     """Three units are two blocks; two triangles are few to wait, so that each waits for another."""
-    return configure(LISTS[1], cards="PMPMMM", memory_ports=2, fifo_depth=2, fraction_bits=40)
+    return wide_machine(LISTS[1], cards="PMPMMM", memory_ports=2, fifo_depth=2, fraction_bits=40)
 
 
 def predicted(pipeline: Pipeline) -> list[float]:
