@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from ..specification.edge_widths import fewest_edge_fraction_bits
 
 
-def on_screen_widths(width: int, height: int, sub_bits: int) -> dict[str, int]:
+def on_screen_widths(width: int, height: int, sub_bits: int) -> dict[str, Any]:
     """The fields of ``MachineConfiguration`` that such triangles need less of than those that
     reach into the guard band.
 

@@ -50,8 +50,8 @@ class Board:
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
-        machine = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS, "shading": "flat",
-                   "memory_ports": 2} | dict(self.changes)
+        machine: dict[str, Any] = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS,
+                                   "shading": "flat", "memory_ports": 2} | dict(self.changes)
         configuration = MachineConfiguration(
             cards=cards, width=width, height=height, **machine,
             **on_screen_widths(width, height, SUB_BITS))

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from amaranth.hdl import Fragment
-
 from ...golden.cycles.cycle_model import SetupTiming
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.triangle_setup.triangle_setup import TriangleSetup
 
 
 @cache
@@ -16,6 +13,11 @@ def setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
     """For the models of ``golden.cycles``; None where the host prepares the triangles."""
     if configuration.setup == "host":
         return None
+    # They load Amaranth: only those whose machine has a set-up wait for it.
+    from amaranth.hdl import Fragment
+
+    from ...hdl.triangle_setup.triangle_setup import TriangleSetup
+
     unit = TriangleSetup(configuration=configuration)
     Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
     return SetupTiming(interval=unit.interval, latency=unit.preparation, inside=unit.depth,
