@@ -1,15 +1,15 @@
 """About how many clocks a machine takes to draw a frame, without simulating it.
 
 A processing element finds the rows of its pixels, one a clock, and each fragment
-takes its unit's one port for a read and, where it is visible, a write; or of two
-ports one clock.  The two go on side by side, the rows a few triangles ahead, so of
-each few triangles it takes the longer of
+takes its unit's one port for a read and, where it is visible, a write; where units
+have two ports it takes one clock.  Rows and ports go on side by side, the rows a few
+triangles ahead, so each few triangles take the longer of
 
     walk     the rows of all triangles whose bounding boxes hold a pixel of its lattice
     ports    the accesses of its fragments, slowed down by the scan's slots
 
-and the frame what the busiest processing element takes for all, or a clock for each
-triangle's broadcast.
+and the frame takes as long as its busiest processing element does for all of them, or
+as the broadcast, a clock for each triangle.
 Where it errs: how often a fragment is visible is the average for a random order of
 drawing; and many processing elements wait for each other's full queues, so that a
 fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
@@ -42,10 +42,10 @@ Int64 = NDArray[np.int64]
 #: From the frame's start until the first fragment is taken, from the last one's read to done.
 LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
 
-#: How many triangles the rows that are found ahead belong to, about.
+#: About so many triangles have rows that were found ahead.
 TRIANGLES_AHEAD = 4
 
-#: What is tried for a number of cycles: up to so many processing elements, each with so many units.
+#: ``cards_for_cycles`` tries up to so many processing elements, each with so many units.
 MOST_ELEMENTS = 256
 UNITS_EACH = (1, 2, 4)
 
@@ -86,8 +86,8 @@ def estimate_cycles(configuration: MachineConfiguration,
     for spans in lattice_spans(triangles, blocks):
         count = spans.end - spans.begin
         places = spans.triangle * elements + spans.element
-        # Writes wait for reads of the same unit: none where units are in turn along the row; where
-        # they are from row to row, those of a row that is longer than what can wait.
+        # Writes wait for reads of the same unit: all where the block is one unit; where units take
+        # turns from row to row, those of a row longer than the queue; none where they do along it.
         waits = np.where(alone[spans.block], spans.length,
                          np.maximum(spans.length - FRAGMENTS_WAITING, 0))
         waits[alternating[spans.block]] = 0

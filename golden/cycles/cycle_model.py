@@ -13,9 +13,9 @@ ahead together; only of its last one is it asked whether there was a place.
 ``cycle_estimate`` is the rough and quick sum of the same parts.
 
 Where units have one port each span is followed by itself, and its clocks are a model
-too: what reads, writes and the scan's slots come to on average.  Where the scan is as a
-list begins is not known, so for a list that takes less than a few scan lines it may
-be five percent off.
+too: what reads, writes and the scan's slots come to on average.  The model does not know
+where the scan is as a list begins, so for a list that takes less than a few scan lines
+it may be five percent off.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ class _Element(Protocol):
 
 
 class _Ports(Protocol):
-    """Those of all memory units, and the elements before them.
+    """The ports of all memory units, and the elements before them.
 
     ``bound``  clocks that the busiest of them needs at least; 0 where none ever waits
     """
@@ -168,7 +168,7 @@ class _Ports(Protocol):
     def bound(self) -> float: ...
 
     def costs(self, entries: Entries, spans: LatticeSpans) -> Sequence[Any]:
-        """For its element, of each of the pairs."""
+        """The cost of each pair, as the pair's element takes it."""
 
 
 class _SetUp:
@@ -176,7 +176,7 @@ class _SetUp:
 
     def __init__(self, timing: SetupTiming, primitive: Int64) -> None:
         self._timing = timing
-        #: Clocks that it takes to offer each triangle, and those before it that cover no pixel.
+        #: Clocks to offer each triangle together with those before it that cover no pixel.
         self._offers = iter(np.diff(primitive, prepend=-1).tolist())
         self._offered = -1.0
         # The triangles whose places are taken, the latest last.
@@ -184,7 +184,7 @@ class _SetUp:
         self._sent = deque([NEVER] * timing.inside, timing.inside)
 
     def arrival(self) -> float:
-        """Of the next triangle."""
+        """When the next triangle is ready."""
         timing, entered, sent = self._timing, self._entered, self._sent
         self._offered = max(self._offered + next(self._offers), entered[0])
         entered.append(max(self._offered, entered[-1] + timing.interval, sent[0]))

@@ -91,7 +91,7 @@ def _cut(triangles: Triangles, blocks: Sequence[ElementBlock], begin: int, end: 
         edge[begin:end, np.newaxis].astype(np.int64)
         for edge in (triangles.left, triangles.right, triangles.top, triangles.bottom))
     in_y = facts["y_offset"], facts["y_bits"], square_bits
-    # Of shifted rows together.
+    # Shifted and other rows of a block, taken together.
     in_x = facts["x_offset"], facts["x_bits"] - facts["shifted"], square_bits
     above = _before(top, *in_y)
     rows = _before(bottom, *in_y) - above

@@ -1,7 +1,7 @@
 """About how many clocks a whole frame takes, from reset until it is shown and read back.
 
-Of its drawing this is ``cycle_estimate``, for boot and read-back what the components say of
-themselves; and ``most_frame_clocks`` is what no machine that works ever takes.
+``predict_frame`` adds up ``cycle_estimate`` for the drawing and what the components state for
+boot and read-back; ``most_frame_clocks`` is more than any machine that works ever takes.
 """
 
 from __future__ import annotations

@@ -35,11 +35,11 @@ class OnePort:
 
     @property
     def bound(self) -> float:
-        """Of the spans whose costs were asked for."""
+        """Clocks that the busiest unit needs for the spans whose costs were asked for."""
         return self._accesses.bound
 
     def costs(self, entries: Entries, spans: LatticeSpans) -> list[OnePortCost]:
-        """For its element, of each of the pairs; ``spans`` in drawing order."""
+        """The cost of each pair, as the pair's element takes it; ``spans`` in drawing order."""
         # A span that crosses several squares is an entry in each.
         each: list[SpanAccesses] = (
             self._accesses.of(spans) / spans.squares[:, np.newaxis, np.newaxis]).tolist()
@@ -49,12 +49,12 @@ class OnePort:
 
 
 class OnePortElement:
-    """Told its triangles in drawing order."""
+    """A processing element that is told its triangles in drawing order."""
 
     def __init__(self, lanes: ElementLanes, pipeline: Pipeline) -> None:
         self._pipeline = pipeline
         self._lanes = lanes
-        # Of the last spans, when each was begun.
+        # When each of the last spans was begun.
         self._begun = deque([NEVER], pipeline.spans_ahead + 1)
         self._passed = self._drawn = NEVER
 

@@ -22,8 +22,8 @@ from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
 
 Float64 = NDArray[np.float64]
 
-#: Of a span three rows, by lane: its fragments, the visible ones, and the clocks that its units
-#: need for both.
+#: Three rows for a span, each by lane: its fragments, its visible fragments, and the clocks that
+#: its units need for both.
 SpanAccesses = list[list[float]]
 
 #: Clocks that a lane loses where nothing waited: two to its first read, and one until the first
@@ -32,19 +32,19 @@ LANE_START = 3
 
 
 def clocks_per_row(configuration: MachineConfiguration) -> int:
-    """Of the lines of the scan that show a row of the picture, blanking beside it included."""
+    """How long the scan shows a row of the picture: its lines, with the blanking beside them."""
     line = configuration.timing.horizontal_total * configuration.clocks_per_pixel
     return line << organisation_of(configuration).resolution.y_shift
 
 
 def _shown(configuration: MachineConfiguration) -> float:
-    """Of a scan, how much is not blanking."""
+    """The share of a scan that is not blanking."""
     timing = configuration.timing
     return timing.horizontal_active * timing.vertical_active / timing.pixels
 
 
 def scan_share(configuration: MachineConfiguration) -> float:
-    """Of a unit's clocks, those in which the scan reads it; the mean over a scan."""
+    """The share of a unit's clocks in which the scan reads it; the mean over a scan."""
     # Every unit reads as often as the others.
     organisation = organisation_of(configuration)
     clocks = configuration.clocks_per_pixel << organisation.resolution.x_shift
@@ -52,8 +52,9 @@ def scan_share(configuration: MachineConfiguration) -> float:
 
 
 def scan_shares(configuration: MachineConfiguration) -> Float64:
-    """float64 (rows, elements, 2): of a clock in such a row of the picture, how much the scan
-    has of each lane; blanking of both kinds is spread over all.  The rows repeat."""
+    """float64 (rows, elements, 2): the share of each lane's time that the scan takes while it
+    shows that row of the picture; blanking of both kinds is spread over all rows.  The rows
+    repeat."""
     organisation = organisation_of(configuration)
     elements = len(organisation.domains)
     unit, group = organisation.scan_tile, organisation.scan_group

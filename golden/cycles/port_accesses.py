@@ -25,8 +25,8 @@ Int64 = NDArray[np.int64]
 
 
 class PortAccesses:
-    """The accesses of all spans of a list to one-port units, asked for in drawing order; ``after``
-    was drawn before."""
+    """The accesses of all spans of a list to one-port units, asked for in drawing order; the list
+    ``after`` was drawn before it."""
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
                  triangles: Triangles, after: DisplayList | None = None) -> None:

@@ -13,9 +13,9 @@ from .element_latencies import NEVER, Drawn, Pipeline
 from .element_spans import LatticeSpans
 from .row_clocks import Entries
 
-#: Clocks of a triangle's fragments; from the first row's first fragment to the last fragment's
-#: end, where nothing came before; and the last span leaves the walker no sooner than so long before
-#: its last fragment's end.
+#: Three numbers of clocks: what a triangle's fragments take; from the first row's first fragment
+#: to the last fragment's end, where nothing came before; and how long before that end the last
+#: span leaves the walker at the soonest.
 TwoPortCost = tuple[float, float, float]
 
 
@@ -29,7 +29,7 @@ class TwoPorts:
         self.elements = [TwoPortElement(pipeline) for _ in range(configuration.processing_elements)]
 
     def costs(self, entries: Entries, spans: LatticeSpans) -> list[TwoPortCost]:
-        """For its element, of each of the pairs."""
+        """The cost of each pair, as the pair's element takes it."""
         if not len(entries.pair):
             return []
         # Entries of an element one after another, whichever the triangle.
@@ -55,7 +55,7 @@ class TwoPorts:
 
 
 class TwoPortElement:
-    """Told its triangles in drawing order."""
+    """A processing element that is told its triangles in drawing order."""
 
     def __init__(self, pipeline: Pipeline) -> None:
         self._latency = pipeline.latency

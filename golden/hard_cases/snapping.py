@@ -99,7 +99,8 @@ def _square_or_lattice(winner: Image) -> Image:
 
 
 def _flattened() -> Float64:
-    """Less than half a unit high: on the grid their corners are in a line, on the centres."""
+    """Triangles less than half a unit high: on the grid their corners are in a line, on the
+    centres."""
     hair = 0.4 / 256
     return np.array([
         [[4, 10.5], [28, 10.5], [16, 10.5 + hair]],

@@ -43,7 +43,7 @@ def _as_if_once(display_list: DisplayList, draw: Draw) -> str | None:
 
 
 def _any_order() -> DisplayList:
-    """Half of them steep, half level at four depths."""
+    """Random triangles, half of them steep, half level at four depths."""
     steep, level = _random(30, 4, ties=False), _random(30, 5, ties=True)
     both = screen_list(np.concatenate([steep.position, level.position]) / 256,
                        np.concatenate([steep.depth, level.depth]))

@@ -78,7 +78,7 @@ class HostBroadcast(Organisation):
                      for block in self._blocks(element, first, first + units))
 
     def _blocks(self, element: int, first: int, end: int) -> Iterator[ElementBlock]:
-        """Aligned powers of two of units, the largest that fit."""
+        """The units from ``first`` up to ``end``, cut into the largest aligned powers of two."""
         interlace, square_bits = self._interlace, self.configuration.square_bits
         place = 0
         while first < end:

@@ -76,7 +76,7 @@ class ElementBlock(NamedTuple):
     alternating: bool
 
     def x_offset_of(self, row: int) -> int:
-        """Of a row that it owns."""
+        """``x_offset`` in a row of squares that has pixels of the block."""
         further = self.shifted and row >> self.y_bits & 1
         return self.x_offset ^ (1 << self.x_bits >> 1 if further else 0)
 
@@ -88,7 +88,7 @@ class Organisation(ABC):
     the word ``word(x, y)``, x and y at the resolution the cage draws at.
     """
 
-    #: For reports.
+    #: What reports and ``machine.json`` call it.
     name: ClassVar[str]
 
     def __init__(self, configuration: MachineConfiguration) -> None:
@@ -108,7 +108,7 @@ class Organisation(ABC):
     @property
     @abstractmethod
     def nodes(self) -> int:
-        """How many keep a picture of their own."""
+        """How many nodes there are; each keeps a picture of its own."""
 
     @property
     @abstractmethod
@@ -123,8 +123,8 @@ class Organisation(ABC):
     @property
     @abstractmethod
     def domains(self) -> tuple[Domain, ...]:
-        """Of each processing element, left to right: also the order in which they report their
-        domains at boot and answer ``READ_COUNTERS``."""
+        """The domain of each processing element, left to right; in this order the elements
+        report them at boot and answer ``READ_COUNTERS``."""
 
     @abstractmethod
     def node_of(self, primitive: Int64) -> Int64:
@@ -136,11 +136,12 @@ class Organisation(ABC):
 
     @abstractmethod
     def word(self, x: Coordinate, y: Coordinate) -> Coordinate:
-        """The address at which it holds it."""
+        """The address at which the unit holds it."""
 
     @abstractmethod
     def pixel(self, unit: Coordinate, word: Coordinate) -> tuple[Coordinate, Coordinate]:
-        """x and y of what lies there; words that hold no pixel give one off the picture."""
+        """x and y of the pixel that a unit holds at a word; a word without one gives a pixel off
+        the picture."""
 
     @abstractmethod
     def shown_by(self, x: Int64, y: Int64) -> Int64:
@@ -154,7 +155,7 @@ class Organisation(ABC):
     @property
     @abstractmethod
     def blocks(self) -> tuple[ElementBlock, ...]:
-        """Of every processing element, in the order in which it walks them."""
+        """The blocks of every processing element, in the order in which it walks them."""
 
     @property
     @abstractmethod

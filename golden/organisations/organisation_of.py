@@ -1,4 +1,4 @@
-"""The organisation of a cage, by its cards."""
+"""Which organisation a cage has."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
 
     Coverage is exact in any case, and the exact picture is the same as on the machine
     for the whole screen.  The stored depth keeps the list's ``depth_bits``, since the
-    background's depth is part of the picture.  Planned is for the resolution that the
+    background's depth is part of the picture.  The plan is for the resolution that the
     memory holds: with units pulled out, ``scene_needs.fitted`` decides whether the list
     still fits.  Raises ``InputError``.
 
@@ -99,7 +99,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         "edge_fraction_bits": needs.edge_fraction_bits,
         "depth_integer_bits": needs.depth_integer_bits(machine),
         "channel_integer_bits": needs.channel_integer_bits(machine),
-        # Behind one that is drawn all of them can wait.
+        # One triangle is drawn, and all the others can wait behind it.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
     } | {name: value for name, value in rest.items() if name != "shading"})
     full = MachineConfiguration(

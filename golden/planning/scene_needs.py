@@ -75,7 +75,8 @@ class SceneNeeds:
 
     @property
     def edge_column_bits(self) -> int:
-        """Unsigned where no column is off the screen, and else too many for that."""
+        """Bits of a column on an edge: an unsigned one where none is off the screen, else a signed
+        one, which has more."""
         low, high = self.columns
         if low >= 0 and high <= self.width:
             return max(1, high.bit_length())
@@ -96,15 +97,16 @@ class SceneNeeds:
         return ceil(error_bound(fraction_bits, self.extent))
 
     def depth_integer_bits(self, machine: MachineConfiguration) -> int:
-        """Of carried depth: at a covered pixel it lies between the vertices', but for its error.
+        """Integer bits of carried depth.
 
-        Whatever else the sums come to, modulo a power of two they end there.  Only the size and
-        the fraction bits of ``machine`` matter.
+        At a covered pixel it lies between the depths of the vertices, but for its error; whatever
+        the sums come to on the way, modulo a power of two they end there.  Only the size and the
+        fraction bits of ``machine`` matter.
         """
         return self._integer_bits(machine, self.greatest_depth)
 
     def channel_integer_bits(self, machine: MachineConfiguration) -> int:
-        """Of a carried channel, likewise."""
+        """Integer bits of a carried colour channel, likewise."""
         return self._integer_bits(machine, self.greatest_channel)
 
     def _integer_bits(self, machine: MachineConfiguration, greatest: int) -> int:

@@ -23,8 +23,8 @@ from ..specification.shading import Shading, shading_for
 from . import float32_depth_buffer, unquantised
 from .unquantised import ScreenTriangles, UnquantisedScene
 
-#: Formats of a display list that are compared; each list of one is with the other's last but one
-#: or the last, as a picture has them unless it is asked otherwise.
+#: Formats of a display list that are compared: these sub-pixel bits with the list's own depth bits,
+#: and these depth bits with its own sub-pixel bits (``formats``).
 SUB_BITS = (1, 2, 4, 6, 8)
 DEPTH_BITS = (8, 12, 16, 24, 32)
 
@@ -182,7 +182,7 @@ class PrecisionStudy:
         triangles = scene.on_screen(**self._shifts)
         if self._shading == "gouraud":
             return triangles
-        # As the machines take it: the first vertex' colour.
+        # The machines take the first vertex's colour.
         return replace(triangles, color=np.repeat(triangles.color[:, :1], 3, axis=1))
 
     def _error(self, picture: Picture) -> PictureError:

@@ -29,10 +29,10 @@ from .edge_functions import Array, box_rows, edge_functions, owned_edges
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-#: Of an edge function, relative to the size of its terms (``edge_functions``).
+#: The most an edge function is off, relative to the size of its terms (``edge_functions``).
 _EDGE_ERROR = 3.4 * 2.0**-53
-#: A depth or colour that float64 may have farther off, as a share of its range, is computed
-#: in fractions.
+#: A depth or colour that float64 may have farther off than this share of its range is computed in
+#: fractions.
 _VALUE_ERROR = 2.0**-44
 
 
@@ -185,7 +185,8 @@ class _Fragments:
                           self.error[which])
 
     def nearest(self, least: Float64) -> _Fragments:
-        """Those that may be their pixel's least, of which ``least`` is an upper bound."""
+        """The fragments that may be the nearest of their pixel; ``least`` is an upper bound of its
+        depth."""
         return self.only(self.depth - self.error <= least.take(self.pixel))
 
     @classmethod

@@ -34,7 +34,7 @@ _TRIALS = 1 << 17
 #: How far the second and third vertex lie from the last pixel, at most, in pixels.
 _SPREAD = 32
 
-#: Of both sides of the screen: room for the two vertices.
+#: Each side of the screen has at least so many pixels: room for the two vertices.
 _SMALLEST = 8
 
 

@@ -63,8 +63,8 @@ class DepthBuffer:
     ) -> Picture:
         """The finished picture; ``color_of`` gives uint8 (n, 3), the colours of n pixels.
 
-        It is asked for some rows of the picture at a time, so that what it needs to
-        compute them stays small.
+        ``color_of`` is asked for some rows of the picture at a time, so that the arrays it
+        computes them with stay small.
         """
         grid = self._grid
         size = grid.height, grid.width

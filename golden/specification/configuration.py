@@ -253,7 +253,8 @@ class MachineConfiguration:
     def share_bits(self) -> int:
         """Log2 of the memory units of each processing element, where they interlace in squares.
 
-        Of the cards as built: with boards pulled out so that shares differ it draws nothing.
+        It is that of the cards as built: with boards pulled out so that shares differ, the machine
+        draws nothing.
         """
         if self.block == 1:
             return 0

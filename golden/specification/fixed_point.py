@@ -22,7 +22,7 @@ Array = NDArray[Any]
 #: double area below 2**44, extent below 2**13.
 MAX_FRACTION_BITS = 64
 
-#: Depths have at most 32 bits: no error is greater.
+#: The greatest error there can be, since depths have at most 32 bits.
 MAXIMUM_ERROR = (1 << 32) - 1
 
 #: Masks and powers of two up to this many bits are exact in int64.

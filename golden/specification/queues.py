@@ -5,7 +5,7 @@ from __future__ import annotations
 from .card_order import domains
 from .configuration import MachineConfiguration
 
-#: So many spans are found ahead: rows of few pixels hide behind longer ones.
+#: Spans that are found ahead, so that rows of few pixels hide behind longer ones.
 SPANS_WAITING = 16
 
 #: Fragments that can wait before each lane, so that short runs in one unit even out, and rows
@@ -18,6 +18,7 @@ OUTLINES_WAITING = 16
 
 
 def depth_lanes(configuration: MachineConfiguration) -> int:
-    """1 where no processing element has more than one memory unit, or 2."""
+    """Lanes of a one-port depth test: 1 where no processing element has more than one memory
+    unit, else 2."""
     return 1 + any(units > 1 for _, units in domains(configuration.cards))
 

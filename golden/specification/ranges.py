@@ -6,7 +6,7 @@ from .errors import InputError
 
 MAXIMUM_SIZE = 4096
 
-#: Of a colour channel, and of a colour: red in the low bits, then green, blue.
+#: Bits of a colour channel, and of a colour: red in the low bits, then green, blue.
 CHANNEL_BITS = 8
 COLOR_BITS = 3 * CHANNEL_BITS
 
