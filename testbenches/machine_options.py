@@ -79,7 +79,7 @@ class MachineOptions:
                 raise InputError("--max-error: chooses the fraction bits itself; leave out "
                                  "--fraction-bits")
         if self.max_error is not None or self.fraction_bits == "exact":
-            settled["fraction_bits"] = None  # so the preset's are not meant
+            settled["fraction_bits"] = None  # in place of the preset's
         if self.setup is not None:
             settled |= SETUPS[self.setup]
         if self.shading != "auto":

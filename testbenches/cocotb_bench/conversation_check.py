@@ -27,7 +27,8 @@ class Expected(NamedTuple):
 
 
 class ConversationCheck:
-    """Call ``command`` and ``response`` when a word passes; of one clock, the command first.
+    """Call ``command`` and ``response`` when a word passes; where both do in one clock, the command
+    first.
 
     Raises ``ProtocolError`` where a response is not the next one due, comes before its
     command, or has a value that cannot be; and where a command is taken before the boot is

@@ -1,4 +1,4 @@
-"""The rules of a stream, for whoever watches its three signals."""
+"""Checks the three signals of a stream against its rules."""
 
 from __future__ import annotations
 

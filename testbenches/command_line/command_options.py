@@ -108,7 +108,7 @@ def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The same but for its precision."""
+    """Give a command the options that choose a machine, but for its precision."""
     return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS)
 
 

@@ -24,7 +24,7 @@ from .command_group import EXIT_DIFFERENT
 from .command_options import Several
 from .progress import step_bar
 
-#: Of ``--engine``: ask the cycle model only.
+#: The value of ``--engine`` that asks the cycle model only.
 MODEL = "model"
 
 

@@ -15,7 +15,7 @@ from ...golden.specification.commands import Opcode, ResponseKind, opcode_of
 #: Commands with which a record begins.
 DRAWING = (Opcode.FRAME_START, Opcode.TRIANGLE, Opcode.PREPARED_TRIANGLE)
 
-#: What a record is cut into, at most.
+#: A record is cut into at most so many buckets.
 BUCKETS = 256
 
 #: Room for every kind of ``Activity``.

@@ -25,8 +25,8 @@ class End(bytes, Enum):
     """Why a run ended."""
 
     DONE = b"D"
-    MAXIMUM = b"M"  # of cycles is reached
-    VIDEO = b"V"  # is malformed
+    MAXIMUM = b"M"  # ``maximum_cycles`` is reached
+    VIDEO = b"V"  # the video output is malformed
 
 
 def machine_constants(configuration: MachineConfiguration) -> str:

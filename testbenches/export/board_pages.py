@@ -24,7 +24,7 @@ from ...hdl.machine import BOARDS
 from ..support.atomic_output import atomic_file
 from .port_meanings import ports_in_parts, stated_timing
 
-#: Whose numbers of bits the pages show.
+#: The pages show this machine's numbers of bits.
 PRESET = "small"
 
 

@@ -19,7 +19,7 @@ from .port_meanings import described_ports, stated_timing
 
 __all__ = ["component_for", "describe"]
 
-#: The four boards and what of them states figures.
+#: The four boards and those of their parts that state a latency or a throughput.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
           "video_scan_generator", "triangle_spans", "fragment_stepper", "interpolator",
           "depth_read_back", "response_link", "survey", "frame_tags", "tag_sweep")

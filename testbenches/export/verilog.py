@@ -66,8 +66,8 @@ module {name}(
 endmodule
 """
 
-#: Of block RAM, whose read is clocked, and of the small RAM of look-up tables, whose read is not:
-#: what ends a module's name, its ports, and its read.
+#: The end of a module's name, its ports and its read: for block RAM, whose read is clocked, and for
+#: the small RAM of look-up tables, whose read is not.
 _READS = {
     "sync": ("", "  input read_enable,\n  output reg [{data_top}:0] read_data",
              "    if (read_enable) read_data <= words[read_address];\n  end"),

@@ -49,7 +49,8 @@ class Board:
     mapping: LogicMapping = "area"
 
     def part(self, cards: str, width: int, height: int) -> Part:
-        """In a machine that is exact for any triangle on the screen.  Raises ``InputError``."""
+        """The board in a machine that is exact for any triangle on the screen.  Raises
+        ``InputError``."""
         machine: dict[str, Any] = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS,
                                    "shading": "flat", "memory_ports": 2} | dict(self.changes)
         configuration = MachineConfiguration(
@@ -58,7 +59,7 @@ class Board:
         return Part(configuration, self.name, self.build, self.mapping)
 
 
-#: By the names that people choose them by.
+#: The rows, by the names that ``--boards`` takes.
 BOARDS = {
     "element": Board("processing element, flat", "processing_element"),
     "domain": Board("processing element, memory units, flat", "domain", domain),

@@ -30,9 +30,9 @@ class Domain(wiring.Component):
         Number of memory units in the cage.
     broadcast: In(BroadcastLines)
     scan: In(ScanLines)
-        Of all units; ``video`` is their or.
+        For all units; ``video`` is the or of theirs.
     pictures: In(PictureLines)
-        Of all units; ``swept`` is their and.
+        For all units; ``swept`` is the and of theirs.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -1,4 +1,4 @@
-"""A board whose RAM is no part of what is measured."""
+"""A board without its RAM, which is then no part of what is measured."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -34,7 +34,7 @@ class OutsideRam(wiring.Component):
 
 
 class _Outside:
-    """Another platform, but for the memories ``storages``."""
+    """A platform like another one, except that the memories ``storages`` become instances."""
 
     def __init__(self, storages: Sequence[memory.Memory], platform: Any) -> None:
         self._storages = storages

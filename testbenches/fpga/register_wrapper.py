@@ -27,7 +27,7 @@ module {bench}(input clk, input rst, input serial_in, output serial_out);
 endmodule
 """
 
-#: The same in the place of a RAM that is not on the chip (``outside_ram``): whatever goes into it
+#: Registers in the place of a RAM that is not on the chip (``outside_ram``): whatever goes into it
 #: ends in a register, what it reads comes from one.  A hierarchy of its own, since a register that
 #: holds what another does would otherwise be left out.
 RAM_PORTS_VERILOG = f"""

@@ -106,8 +106,11 @@ class Answers:
         return [response_fields(kind, value) for value in self._values[kind]]
 
     def frame(self, number: int, reading: int) -> Simulation:
-        """Of the frames, each of whose depths was read back once; with the work that a reading of
-        the counters says, and the record of activity that ends with it, if the engine keeps any."""
+        """Frame ``number``, where each frame's depths were read back once.
+
+        Its work is what that ``reading`` of the counters says, its activity the record that ends
+        with the reading, if the engine keeps any.
+        """
         run, organisation = self._run, self._organisation
         words = organisation.depths_read_back
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]

@@ -10,7 +10,7 @@ from ...golden.specification.configuration import MachineConfiguration
 
 @cache
 def setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
-    """For the models of ``golden.cycles``; None where the host prepares the triangles."""
+    """The figures that ``golden.cycles`` wants; None where the host prepares the triangles."""
     if configuration.setup == "host":
         return None
     # They load Amaranth: only those whose machine has a set-up wait for it.

@@ -19,7 +19,7 @@ OWN_COLOR = "#3b82c4"
 PEER_COLOR = "#d98a2b"
 FLOAT_COLOR = "#8a5fb0"
 
-#: The case of ``bench_cases`` that the peers are shown at, how many fragments its triangle has,
+#: The case of ``speed.cases`` that the peers are shown at, how many fragments its triangle has,
 #: and the depth bits of their errors, which is also what errors are shown in.
 PEER_CASE = "right_TL_512"
 PEER_FRAGMENTS = 130_816

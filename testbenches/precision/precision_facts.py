@@ -37,7 +37,7 @@ def precision_facts(precision: Precision) -> dict[str, Any]:
         "extent": precision.extent,
         "exact_fraction_bits": machine.fraction_bits,
         "fraction_bits": [_row(precision, row) for row in precision.rows],
-        # Of the rows whose speed is known, by fragments a clock and a second.
+        # Found among the rows whose speed is known, by fragments a clock and a second.
         "pareto_front": {
             panel: [point.label for point in pareto_front(own_points(precision, panel))]
             for panel in ("clock", "second")

@@ -59,7 +59,7 @@ def _speeds(precision: Precision) -> TextTable:
 
 
 def precision_text(precision: Precision) -> str:
-    """Plain lines."""
+    """The study as plain lines, the columns aligned."""
     return "\n\n".join(["\n".join(headline(precision)),
                         *(table.text() for table in tables(precision)),
                         "\n".join(remarks(precision))])

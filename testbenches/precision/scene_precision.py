@@ -72,7 +72,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class PrecisionRow:
-    """One number of fraction bits: errors, and what was measured of its machine; None: was not."""
+    """One number of fraction bits: its errors, and what was measured of its machine, or None."""
 
     point: FractionBitsPoint
     frame: Frame | None
@@ -125,14 +125,14 @@ class Precision:
         return nearest.frame
 
     def fragments_per_clock(self, row: PrecisionRow) -> float | None:
-        """Of one processing element, while the frame is drawn."""
+        """Fragments a clock of one processing element, while the frame is drawn."""
         frame = self.frame(row)
         if frame is None or not frame.cycles:
             return None
         return frame.fragments / (frame.cycles * self.machine.processing_elements)
 
     def megafragments_per_second(self, row: PrecisionRow) -> float | None:
-        """Of one processing element, at its median clock rate."""
+        """Millions of fragments a second of one processing element, at its median clock rate."""
         rate = self.fragments_per_clock(row)
         if rate is None or row.placement is None:
             return None

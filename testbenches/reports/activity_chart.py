@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from .page import chart_style, svg_element
 
-#: Beyond, names beside the rows would overlap.
+#: Names beside more rows than that would overlap.
 _LABELLED_ELEMENTS = 24
 
-#: Dots of a processing element's row in the timeline, between them a gap.
+#: Height in dots of a processing element's row in the timeline; between two rows there is a gap.
 _ROW_DOTS = 16
 _GAP_DOTS = 2
 

@@ -45,7 +45,7 @@ def color_difference(rendering: Rendering, reach: int = 0) -> Pixels:
 
 
 def depth_difference(rendering: Rendering, reach: int = 0) -> Pixels:
-    """The same of the depths that were read back."""
+    """The same picture as ``color_difference``, of the depths that were read back."""
     comparison = rendering.comparison
     return _marked(_nearness(rendering, comparison.golden.depth),
                    _spread(comparison.depth_different, reach), comparison.depth_orphans)

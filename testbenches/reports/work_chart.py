@@ -15,7 +15,7 @@ from .page import chart_style, svg_element
 FRAGMENTS_COLOR = "#3b82c4"
 BUSY_COLOR = "#d98a2b"
 
-#: Beyond, figures beside the bars would overlap.
+#: Figures beside more bars than that would overlap.
 _LABELLED_ELEMENTS = 24
 
 

@@ -110,7 +110,8 @@ def check_case(name: str) -> str:
 def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 1) -> CaseLists:
     """The display lists of a case, of flat colours; ``InputError`` for an unknown name.
 
-    The least list is repeated ``times``, but for the mesh, which is one pass whatever that says.
+    A peers' list is repeated until it has ``LEAST_TRIANGLES``, and all that ``times`` over; the
+    mesh is one pass whatever ``times`` says.
 
     The peers' triangles have their vertices on pixel centres and no depth.  Here triangle i of
     3n has a slot of depths to itself, and slopes through all of it.  A mesh has depths: each of

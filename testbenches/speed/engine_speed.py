@@ -71,7 +71,7 @@ class EngineSpeed:
 
 def measure_engines(configuration: MachineConfiguration, display_list: DisplayList, *, runs: int,
                     pysim_cycles: int) -> EngineSpeed:
-    """Frame and loop take turns, so that both see the same machine's moods.
+    """Measure all three; frame and loop take turns, so that both meet the same load.
 
     Raises ``ToolMissingError`` where Verilator does not work here.
     """

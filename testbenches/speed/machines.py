@@ -36,7 +36,7 @@ class MachineAxes:
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
 
 
-#: Of ``cardcage bench --all``.
+#: The machines of ``cardcage bench --all``.
 ALL_MACHINES = MachineAxes(
     elements=(1, 4, 16), units=(1, 2), ports=(1, 2), setups=tuple(SETUPS),
     blocks=(1, 4))

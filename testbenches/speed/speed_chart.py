@@ -23,7 +23,7 @@ def bench_chart(rows: Sequence[BenchRow], path: Path) -> None:
     """Write a PNG: how fast each case is, beside the fastest machine of its line.
 
     Simulated as marks, predicted as lines; the machines differ in something that
-    ``bench_machines.varied`` names.
+    ``machines.varied`` names.
     """
     def value(row: BenchRow, name: str) -> int:
         return int(getattr(row.machine, name))

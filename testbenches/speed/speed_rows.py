@@ -68,7 +68,7 @@ def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequen
           ) -> Iterator[BenchRow]:
     """Every case in every order on every machine; by the model alone where ``engine`` is None.
 
-    ``step`` is told what comes next.  Raises as ``bench_run.measure``.
+    ``step`` is told what comes next.  Raises what ``measure.measure`` raises.
     """
     shortest = [case_lists(case, order) for order in orders for case in cases]
     for machine in machines:

@@ -30,7 +30,8 @@ void main() { pixel = vec4(tint, 1.0); }
 
 
 def opengl_drawer(display_list: DisplayList) -> tuple[Callable[[], None], str]:
-    """A function that clears, draws the list with a depth test and reads it back, and who does it.
+    """A function that clears, draws the list with a depth test and reads it back, and the name of
+    the renderer behind it.
 
     Raises ``ImportError`` or the library's own error where there is no OpenGL.
     """

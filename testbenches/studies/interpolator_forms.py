@@ -84,7 +84,7 @@ class FixedPointInterpolator(wiring.Component):
 class Runs:
     """Runs of pixels, at strides of 1, 2 and 4, and the exact depth of each pixel in order.
 
-    A number for each run:
+    Each of these arrays has a number for each run:
 
     ``primitive``    its triangle
     ``x``, ``y``     its first pixel
@@ -149,7 +149,7 @@ def _remainder_planes(display_list: DisplayList, primitive: int, left: int, top:
 
 
 def forms(display_list: DisplayList, runs: Runs, *, units: int, double_area: int) -> list[Form]:
-    """All of them, exact for every triangle of the screen up to ``double_area``.
+    """All forms, exact for every triangle of the screen up to ``double_area``.
 
     ``units`` of memory decide how long a stride may be.
     """
