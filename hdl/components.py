@@ -1,6 +1,7 @@
 """Every component that can be exported by itself, by the name of its module."""
 
 from collections.abc import Callable
+from functools import partial
 
 from amaranth.lib import wiring
 
@@ -11,14 +12,13 @@ from .arithmetic.pipelined_multiplier import PipelinedMultiplier
 from .backplane.connectors import memory_bus_bits
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
-from .controller.central_broadcast_controller import CentralBroadcastController
 from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
+from .machine import BOARDS
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
-from .memory_unit.memory_unit import MemoryUnit
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
 from .memory_unit.two_port_memory import TwoPortMemory
@@ -27,7 +27,6 @@ from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
 from .processing_element.memory_bus_selector import MemoryBusSelector
-from .processing_element.processing_element import ProcessingElement
 from .processing_element.survey import Survey
 from .rasteriser.edge_columns import EdgeColumns
 from .rasteriser.fragment_stepper import FragmentStepper
@@ -43,7 +42,6 @@ from .triangle_setup.result_queue import ResultQueue
 from .triangle_setup.sampling_grid import SamplingGrid, grid_layout
 from .triangle_setup.triangle_setup import TriangleSetup
 from .triangle_setup.vertex_sort import VertexSort
-from .video.video_scan_generator import VideoScanGenerator
 
 __all__ = ["COMPONENTS"]
 
@@ -53,12 +51,13 @@ def _depth(configuration: MachineConfiguration) -> dict[str, int]:
     return {"value_bits": configuration.depth_bits, "word_bits": configuration.depth_plane_bits}
 
 
-#: Makes a component as a machine of that configuration has it; the four boards first.
+def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
+    return BOARDS[name](configuration=configuration)
+
+
+#: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
-    "central_broadcast_controller": lambda c: CentralBroadcastController(configuration=c),
-    "processing_element": lambda c: ProcessingElement(configuration=c),
-    "memory_unit": lambda c: MemoryUnit(configuration=c),
-    "video_scan_generator": lambda c: VideoScanGenerator(configuration=c),
+    **{name: partial(_board, name) for name in BOARDS},
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "depth_read_back": lambda c: DepthReadBack(**memory_bus_bits(c)),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),

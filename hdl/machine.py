@@ -8,7 +8,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.specification import commands
-from ..golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
+from ..golden.specification.card_order import CARD_NAMES, MEMORY_UNIT, PROCESSING_ELEMENT
 from ..golden.specification.configuration import MachineConfiguration
 from .backplane.words import response_layout
 from .controller.central_broadcast_controller import CentralBroadcastController
@@ -29,7 +29,7 @@ BOARDS: dict[str, type[wiring.Component]] = {
 }
 
 #: The boards that slots can hold, by their letter in the card order.
-CARDS = {PROCESSING_ELEMENT: "processing_element", MEMORY_UNIT: "memory_unit"}
+CARDS = {letter: name.replace(" ", "_") for letter, name in CARD_NAMES.items()}
 
 
 class Machine(wiring.Component):
@@ -128,7 +128,8 @@ class Machine(wiring.Component):
         broadcast = wires(m, "broadcast_wires")
         scan = wires(m, "scan_wires")
         fixed.d.comb += controller.total.eq(total)
-        fixed.d.comb += [card.total.eq(total) for card in self.cards]
+        fixed.d.comb += [card.total.eq(total) for card in self.cards
+                         if "total" in card.signature.members]
 
         elements, units = self.processing_elements, self.memory_units
         broadcast.d.comb += [

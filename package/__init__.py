@@ -1,4 +1,4 @@
-"""Cardcage: parallel Z-buffer graphics machines as RTL, every pixel proved against a golden model.
+"""Cardcage: parallel Z-buffer graphics machines as RTL, every pixel checked against a golden model.
 
 What a program needs, by one name each:
 

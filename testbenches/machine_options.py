@@ -69,10 +69,8 @@ class MachineOptions:
         if self.preset is not None and self.preset not in PRESETS:
             raise InputError(f"preset: {self.preset!r} is none of {', '.join(PRESETS)}")
         settled = dict(PRESETS[self.preset] if self.preset else DEFAULT_MACHINE)
-        for name in ("cards", "words", "clocks_per_pixel", "memory_ports", "block", "skew",
-                     "fraction_bits"):
-            if getattr(self, name) is not None:
-                settled[name] = getattr(self, name)
+        asked = {name: getattr(self, name) for name in _FIELDS}
+        settled |= {name: value for name, value in asked.items() if value is not None}
         if self.max_error is not None:
             check_max_error(self.max_error)
             if self.fraction_bits is not None:
@@ -94,6 +92,12 @@ class MachineOptions:
         settled = {name: value for name, value in self.machine().items()
                    if name not in ("width", "height")}
         return settled | {"max_error": self.max_error or 0}
+
+
+#: What is asked for by the name of a field of the configuration, and means it.
+_FIELDS = [field.name for field in fields(MachineOptions)
+           if field.name in {field.name for field in fields(MachineConfiguration)}
+           and field.name not in ("shading", "setup")]
 
 
 def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:

@@ -9,17 +9,20 @@ from .errors import InputError
 
 PROCESSING_ELEMENT = "P"
 MEMORY_UNIT = "M"
+#: Every card that a slot can hold, by its letter.  X is no letter: it counts, as in ``4x(PMM)``.
+CARD_NAMES = {PROCESSING_ELEMENT: "processing element", MEMORY_UNIT: "memory unit"}
 MAXIMUM_CARDS = 4096
 
-_REPEATED = re.compile(r"(?:(\d+)[Xx*×])?(?:\(([PM]*)\)|([PM]))")
+_LETTERS = "".join(CARD_NAMES)
+_REPEATED = re.compile(rf"(?:(\d+)[Xx*×])?(?:\(([{_LETTERS}]*)\)|([{_LETTERS}]))")
 
 
 def parse_cards(text: str) -> str:
     """Spell out a card order: ``"2x(PMM) PM"`` → ``"PMMPMMPM"``, left to right.
 
-    Letters ``P`` (processing element) and ``M`` (memory unit), blanks, groups in
-    parentheses, and ``Nx`` before a card or a group.  Raises ``InputError`` for
-    anything else; whether the machine can be built is ``check_cards``'s question.
+    Letters of ``CARD_NAMES``, blanks, groups in parentheses, and ``Nx`` before a card or a group.
+    Raises ``InputError`` for anything else; whether the machine can be built is ``check_cards``'s
+    question.
     """
 
     def expand(match: re.Match[str]) -> str:
@@ -30,17 +33,17 @@ def parse_cards(text: str) -> str:
                              "cards; change the count")
         return group * count
 
-    unknown = re.search(r"[^PMpm()\dXx*×\s]", text)
+    unknown = re.search(rf"[^{_LETTERS}{_LETTERS.lower()}()\dXx*×\s]", text)
     if unknown:
+        known = ", ".join(f"{letter} ({name})" for letter, name in CARD_NAMES.items())
         raise InputError(f"cards: {text!r}: {unknown[0]!r} at position {unknown.start() + 1} is no "
-                         "card; use P (processing element), M (memory unit), blanks and groups "
-                         "such as 2x(PMM)")
+                         f"card; use {known}, blanks and groups such as 2x(PMM)")
     cards, spelled = "".join(text.upper().split()), ""
     if re.search(r"[X*×]\d", cards):
         raise InputError(f"cards: {text!r}: two counts in a row; write one before a card or group")
     while cards != spelled:  # each pass opens the innermost groups
         spelled, cards = cards, _REPEATED.sub(expand, cards)
-    if set(cards) - {PROCESSING_ELEMENT, MEMORY_UNIT}:
+    if set(cards) - set(_LETTERS):
         raise InputError(f"cards: {text!r}: parentheses and counts do not match; write groups as "
                          "in 4x(PMM)")
     if len(cards) > MAXIMUM_CARDS:
@@ -68,6 +71,6 @@ def check_cards(cards: str) -> None:
 
 def domains(cards: str) -> list[tuple[int, int]]:
     """(first unit, number of units) owned by each processing element, left to right."""
-    shares = [len(part) for part in cards.split(PROCESSING_ELEMENT)]
+    shares = [part.count(MEMORY_UNIT) for part in cards.split(PROCESSING_ELEMENT)]
     firsts = list(accumulate(shares))
     return list(zip(firsts[:-1], shares[1:], strict=True))

@@ -23,7 +23,7 @@ HELP_SETTINGS = {"max_content_width": 100, "help_option_names": ["-h", "--help"]
 @click.version_option(package_name="cardcage", prog_name="cardcage")
 @click.pass_context
 def main(context: click.Context) -> None:
-    """Parallel Z-buffer graphics machines as RTL, every pixel proved against a golden model.
+    """Parallel Z-buffer graphics machines as RTL, every pixel checked against a golden model.
 
     \b
     Examples:

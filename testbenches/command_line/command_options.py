@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from ...golden.planning.presets import PRESETS
+from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import MAXIMUM_WORDS, RANGES
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
@@ -62,8 +63,9 @@ class Several(click.ParamType):
 
 #: Together one for each field of ``machine_options.MachineOptions``.
 _CAGE_OPTIONS = (
-    click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: P is a "
-                 "processing element, M a memory unit.  [default: 2x(PMM)]"),
+    click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: "
+                 + ", ".join(f"{letter} {name}" for letter, name in CARD_NAMES.items())
+                 + ".  [default: 2x(PMM)]"),
     click.option("--size", type=Size(), metavar="WxH",
                  help="Highest resolution.  [default: 64x64]"),
     click.option("--preset", type=click.Choice(list(PRESETS)),

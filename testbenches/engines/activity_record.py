@@ -38,12 +38,12 @@ ACTIVITY_KINDS = (
     Kind(Activity.PORT, "port_conflict", "waits for its port: a write", "#b3261e"),
     Kind(Activity.SCAN, "scan_slot", "waits for its port: the scan", "#e07a5f"),
     Kind(Activity.EMPTY_ROW, "empty_row", "row without its pixels", "#d98a2b"),
-    Kind(Activity.PREPARING, "preparing", "loads a triangle", "#f0c05a"),
+    Kind(Activity.PREPARING, "preparing", "another block of units", "#f0c05a"),
     Kind(Activity.FILLING, "filling", "pipeline fills", "#8a6fb0"),
     Kind(Activity.BROADCAST, "broadcast_wait", "another FIFO is full", "#7a8794"),
     Kind(Activity.SETUP, "setup_wait", "no triangle is ready", "#a9b4be"),
     Kind(Activity.DRAIN, "drain", "done, others are not", "#cfd6dc"),
-    Kind(Activity.SERVICE, "service", "clears or reports", "#4f8f6a"),
+    Kind(Activity.SERVICE, "service", "surveys or reports", "#4f8f6a"),
 )
 
 

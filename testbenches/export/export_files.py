@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..machine_options import (
@@ -25,7 +26,8 @@ from ..support.atomic_output import atomic_file, output_errors
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
 #: Amaranth and so is not asked here).
 COMPONENT_NAMES = (
-    "central_broadcast_controller", "processing_element", "memory_unit", "video_scan_generator",
+    "central_broadcast_controller", *(name.replace(" ", "_") for name in CARD_NAMES.values()),
+    "video_scan_generator",
     "broadcast_queue", "depth_read_back", "divider", "edge_columns", "edge_setup",
     "fragment_stepper", "frame_tags", "id_increment", "interpolator", "lattice_block",
     "memory_bus_selector", "one_port_depth_test", "one_port_lane", "one_port_memory",

@@ -76,7 +76,7 @@ def main(triangles: int, pixels: float, size: int, runs: int) -> None:
                                      height=size).display_list
     fragments = int(exact.depth_complexity(display_list).sum())
     click.echo(f"{triangles:,} triangles, {fragments:,} fragments, {size}x{size}")
-    drawers: dict[str, Callable[[], object]] = {"golden.exact": lambda: exact.draw(display_list)}
+    drawers: dict[str, Callable[[], object]] = {"exact": lambda: exact.draw(display_list)}
     try:
         draw, name = opengl_drawer(display_list)
         drawers[name.partition(" (")[0]] = draw

@@ -57,10 +57,9 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
         raise InputError("--cycles: chooses the cards itself; leave out --cards")
     loaded = load_scene(scene, options)
     if cycles is not None:
-        settled = options.machine()
-        options = replace(options, cards=cards_for_cycles(loaded.display_list, cycles, **{
-            name: settled[name] for name in ("words", "clocks_per_pixel", "memory_ports", "block")
-            if name in settled}))
+        fields = {name: value for name, value in options.for_plan().items()
+                  if name not in ("cards", "max_error")}
+        options = replace(options, cards=cards_for_cycles(loaded.display_list, cycles, **fields))
     planned = plan(loaded.display_list, **options.for_plan())
     return ScenePlan(
         scene=loaded,

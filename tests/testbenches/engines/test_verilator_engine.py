@@ -25,7 +25,7 @@ from cardcage.testbenches.export import verilog
 from cardcage.testbenches.frames.compare import compare
 from cardcage.testbenches.frames.frame_job import frame_job
 from cardcage.testbenches.frames.simulation import simulate
-from cardcage.testbenches.support import cache as model_cache
+from cardcage.testbenches.support import cache as kept
 
 LIST = make_display_list("random:n=25,size=9,seed=3", width=16, height=12).display_list
 CONFIGURATION = plan(LIST, cards="PMPMMM", clocks_per_pixel=2).configuration
@@ -46,7 +46,7 @@ def cache(tmp_path_factory):
     (commands / "python").chmod(0o755)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", str(commands), prepend=os.pathsep)
-        patch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(folder))
+        patch.setenv(kept.ENVIRONMENT_VARIABLE, str(folder))
         yield folder
 
 
@@ -163,7 +163,7 @@ print((path / "machine").read_text())
 
 
 def test_two_processes_at_once_do_not_harm_the_cache(tmp_path):
-    environment = os.environ | {model_cache.ENVIRONMENT_VARIABLE: str(tmp_path)}
+    environment = os.environ | {kept.ENVIRONMENT_VARIABLE: str(tmp_path)}
     running = [subprocess.Popen([sys.executable, "-c", BUILD], env=environment, text=True,
                                 stdout=subprocess.PIPE) for _ in range(4)]
     assert [process.communicate(timeout=60)[0] for process in running] == ["whole\n"] * 4
@@ -171,28 +171,28 @@ def test_two_processes_at_once_do_not_harm_the_cache(tmp_path):
 
 
 def test_an_interrupted_build_leaves_nothing(tmp_path, monkeypatch):
-    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(kept.ENVIRONMENT_VARIABLE, str(tmp_path))
 
     def interrupted(folder):
         (folder / "half").touch()
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        model_cache.cached("key", interrupted)
+        kept.cached("key", interrupted)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_cache_that_cannot_be_written_is_replaced(tmp_path, monkeypatch):
     (tmp_path / "file").touch()  # a folder inside a file: nobody may, not even the superuser
-    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path / "file" / "cache"))
-    path, fresh = model_cache.cached("key", lambda folder: (folder / "machine").touch())
+    monkeypatch.setenv(kept.ENVIRONMENT_VARIABLE, str(tmp_path / "file" / "cache"))
+    path, fresh = kept.cached("key", lambda folder: (folder / "machine").touch())
     assert fresh and (path / "machine").exists()
     assert tmp_path not in path.parents
 
 
 def test_the_cache_command(tmp_path, monkeypatch):
-    monkeypatch.setenv(model_cache.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
-    model_cache.cached("key", lambda folder: (folder / "model").write_bytes(bytes(3_000_000)))
+    monkeypatch.setenv(kept.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
+    kept.cached("key", lambda folder: (folder / "model").write_bytes(bytes(3_000_000)))
     assert "3.0 MB in" in CliRunner().invoke(main, ["cache"]).output
     assert "3.0 MB removed" in CliRunner().invoke(main, ["cache", "--clear"]).output
     assert not (tmp_path / "cache").exists()
