@@ -14,7 +14,7 @@ from .scenes.built_in.spheres import spheres, spheres_triangles
 from .scenes.built_in.teapot import teapot, teapot_triangles
 from .scenes.built_in.tetra import tetra, tetra_triangles
 from .scenes.mesh import Mesh
-from .scenes.mesh_files import MESH_EXTENSIONS
+from .scenes.mesh_files.load_mesh import MESH_EXTENSIONS
 from .specification.errors import InputError
 
 DISPLAY_LIST_EXTENSION: Final = ".npz"

@@ -20,7 +20,7 @@ from .scenes.camera import Camera
 from .scenes.lighting import DEFAULT_LIGHTING, Lighting, Shading, check_shading
 from .scenes.mesh import Mesh
 from .scenes.mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
-from .scenes.mesh_files import load_mesh
+from .scenes.mesh_files.load_mesh import load_mesh
 from .scenes.quantise import PictureFormat
 from .specification.display_list import DisplayList
 from .specification.errors import InputError
@@ -106,8 +106,8 @@ def _notes(mesh: Mesh, display_list: DisplayList) -> tuple[str, ...]:
     faces = mesh.triangles
     if degenerate == faces:
         which = "the only face is" if faces == 1 else f"all {faces} faces are"
-        return (f"{which} degenerate: the picture is empty",)
-    notes = []
+        return (*mesh.notes, f"{which} degenerate: the picture is empty")
+    notes = list(mesh.notes)
     if degenerate:
         notes.append(f"{degenerate} of {faces} faces are degenerate and draw nothing")
     if display_list.triangles == 0:

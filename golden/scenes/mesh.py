@@ -43,6 +43,7 @@ class Mesh:
     ``smooth``         False where the faces are meant to be seen as facets under Gouraud shading
     ``up``             the direction that is up in the picture
     ``eye_direction``  from the scene to the eye of the default camera; None: three-quarter view
+    ``notes``          what a mesh file holds that is not in the mesh: warnings of one line each
 
     Raises ``InputError`` where an array has the wrong dtype, shape or range.
     """
@@ -54,6 +55,7 @@ class Mesh:
     smooth: bool = True
     up: Vector = UP_Z
     eye_direction: Vector | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         vertex_count = len(self.vertices) if self.vertices.ndim else 0

@@ -10,7 +10,7 @@ import trimesh
 
 from cardcage.golden.scene_display_list import display_list_of_mesh, make_display_list
 from cardcage.golden.scenes.mesh import BASE_COLOR, UP_Y, UP_Z, Mesh, corner_normals, face_normals
-from cardcage.golden.scenes.mesh_files import MESH_EXTENSIONS, load_mesh
+from cardcage.golden.scenes.mesh_files.load_mesh import MESH_EXTENSIONS, load_mesh
 from cardcage.golden.scenes.quantise import PictureFormat
 from cardcage.golden.specification.errors import InputError
 

@@ -1,0 +1,1 @@
+"""Mesh files: one reader per format, and what they share."""

@@ -1,0 +1,1 @@
+"""glTF 2.0: its document and buffers, its accessors, its nodes, and the mesh that they make."""

@@ -1,0 +1,217 @@
+"""STL, binary and text.  Solids, normals and the colours of some binary dialects are passed over.
+
+A binary file is the array that numpy reads as it stands.  A text file is taken word by
+word, in arrays: no reader at hand refuses a solid that is cut short, a number that cannot
+be read *and* a wrong count.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...specification.errors import InputError
+from .numbers import numbers
+from .reading import Part, Reading, contents_error
+from .text_lines import SPACE, Lines, line_number, plain_text, ranges, stretch_from
+
+HEADER_BYTES: Final = 84
+_FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: The words of a facet; None: a number.
+_VERTEX: Final = (b"vertex", None, None, None)
+FACET_WORDS: Final = (b"facet", b"normal", None, None, None, b"outer", b"loop",
+                      *_VERTEX, *_VERTEX, *_VERTEX, b"endloop", b"endfacet")
+#: From each of these words to the next, vertex numbers (in every second stretch) or other text.
+_BOUNDS: Final = (0, 8, 11, 12, 15, 16, 19)
+
+
+def read_stl(data: bytes, folder: Path) -> Reading:
+    """The triangles of an STL file."""
+    del folder
+    reading = Reading()
+    if _is_binary(data):
+        corners = _binary(data)
+    else:
+        text = plain_text(data)
+        corners = _Text(text).read()
+        if not data.endswith((b"\n", b"\r", b"\n\0")) and not _ends_with_its_name(text):
+            reading.notes.append("the last line has no end: the file may be cut short")
+    points = corners.reshape(-1, 3)
+    faces = np.arange(len(points), dtype=np.int64).reshape(-1, 3)
+    reading.parts.append(Part(points, faces))
+    return reading
+
+
+def _is_binary(data: bytes) -> bool:
+    """Binary files may start with ``solid``, too: then the size decides, or a zero byte."""
+    if len(data) >= HEADER_BYTES:
+        announced = int.from_bytes(data[80:84], "little")
+        if len(data) == HEADER_BYTES + announced * _FACET.itemsize:
+            return True
+    start = data[:512].removeprefix(b"\xef\xbb\xbf").lstrip()
+    if start[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return False
+    return start[:5].lower() != b"solid" or b"\0" in data[:512]
+
+
+def _binary(data: bytes) -> NDArray[np.float64]:
+    if len(data) < HEADER_BYTES:
+        raise contents_error(f"{len(data)} bytes: cut short within the header, or no STL")
+    announced = int.from_bytes(data[80:84], "little")
+    there, rest = divmod(len(data) - HEADER_BYTES, _FACET.itemsize)
+    tail = data[HEADER_BYTES + announced * _FACET.itemsize :]
+    if announced > there or tail.strip(b"\0 \t\r\n"):
+        more = f" and {rest} bytes" if rest else ""
+        raise contents_error(f"{announced} triangles are announced and {there}{more} are there: "
+                             "the file is cut short, or no binary STL")
+    facets = np.frombuffer(data, _FACET, announced, HEADER_BYTES)
+    return facets["corners"].astype(np.float64)
+
+
+def _ends_with_its_name(text: bytes) -> bool:
+    """The last line names the solid that it ends, as its first line does."""
+    begin = [match[1] for match in re.finditer(rb"(?im)^[ \t]*solid\b(.*)$", text)]
+    end = re.search(rb"(?i)endsolid\b(.*)\n\Z", text)
+    return end is not None and end[1].strip() == begin[-1].strip()
+
+
+class _Text:
+    def __init__(self, text: bytes) -> None:
+        self._text = text
+        self._open = False
+        self._solids = 0
+
+    def read(self) -> NDArray[np.float64]:
+        """The corners of all facets, float64 (f, 3, 3)."""
+        found = [np.zeros((0, 3, 3))]
+        start, rest = 0, b""
+        while stretch := stretch_from(self._text, start + len(rest)):
+            # A facet that the stretch cuts is taken with the next one.
+            corners, taken = self._facets(rest + stretch, start)
+            found.append(corners)
+            whole = len(rest) + len(stretch)
+            rest = (rest + stretch)[taken:]
+            start += whole - len(rest)
+        if rest.strip():
+            self._refuse(start + len(rest) - len(rest.lstrip()), "the file ends within a facet")
+        if self._open:
+            raise contents_error("the last solid has no endsolid: the file is cut short")
+        if not self._solids:
+            raise contents_error("no solid in it: not an STL")
+        return np.concatenate(found)
+
+    def _refuse(self, place: int, what: str) -> None:
+        raise contents_error(f"line {line_number(self._text, place)}: {what}; the file is cut "
+                             "short or damaged")
+
+    def _facets(self, stretch: bytes, start: int) -> tuple[NDArray[np.float64], int]:
+        lines = Lines(stretch)
+        names, places, opens = self._solid_lines(lines, start)
+        # The rest of a line with the name of a solid may hold any word.
+        begin = lines.newlines[:-1][names]
+        length = np.diff(lines.newlines)[names]
+        lines.text[ranges(begin + 1, length - 1)] = SPACE
+        inside = np.repeat(~names, lines.count)
+        words = lines.words[inside]
+        self._check_solids(words, places, opens, start)
+        whole = len(words) // len(FACET_WORDS)
+        facets = words[: whole * len(FACET_WORDS)].reshape(-1, len(FACET_WORDS))
+        self._check_words(lines.text, facets, words[whole * len(FACET_WORDS) :], start)
+        taken = int(words[facets.size]) - 1 if len(words) > facets.size else len(stretch)
+        bounds = np.append(facets[:, _BOUNDS].reshape(-1), taken + 1)
+        of_vertex = np.tile(np.arange(len(_BOUNDS)) % 2 == 1, whole)
+        if not whole:
+            return np.zeros((0, 3, 3)), taken
+        text = lines.text[bounds[0] : taken + 1][np.repeat(of_vertex, np.diff(bounds))]
+        try:
+            values = numbers(text.tobytes(), np.float64, 9 * whole)
+        except ValueError:
+            raise self._bad_number(lines.text, facets, start) from None
+        return values.reshape(-1, 3, 3), taken
+
+    def _solid_lines(
+        self, lines: Lines, start: int
+    ) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.bool_]]:
+        """Which lines open or end a solid; where the first word of each is; which open one."""
+        filled = np.flatnonzero(lines.count > 0)
+        head = lines.words[lines.first[filled]]
+        opens, ends = (_is_word(lines.text, head, word) for word in (b"solid", b"endsolid"))
+        names = np.zeros(len(lines.count), np.bool_)
+        names[filled] = opens | ends
+        return names, head[opens | ends], opens[opens | ends]
+
+    def _check_solids(
+        self,
+        words: NDArray[np.int64],
+        places: NDArray[np.int64],
+        opens: NDArray[np.bool_],
+        start: int,
+    ) -> None:
+        """Solids open and end in turn, between facets, and every facet is in one."""
+        before = np.searchsorted(words, places)
+        last = 0
+        for place, opening, count in zip(places.tolist(), opens.tolist(), before.tolist(),
+                                         strict=True):
+            if opening == self._open:
+                self._refuse(start + place - 1, "a solid in a solid" if opening
+                             else "an endsolid without its solid")
+            if count % len(FACET_WORDS):
+                self._refuse(start + place - 1, "a facet is not ended")
+            if opening and count > last:
+                self._refuse(start + int(words[last]) - 1, "a facet outside of a solid")
+            last = count
+            self._open = opening
+            self._solids += opening
+        if not self._open and len(words) > last:
+            self._refuse(start + int(words[last]) - 1, "a facet outside of a solid")
+
+    def _check_words(
+        self,
+        text: NDArray[np.uint8],
+        facets: NDArray[np.int64],
+        rest: NDArray[np.int64],
+        start: int,
+    ) -> None:
+        """Every keyword of a facet is in its place."""
+        bad: list[tuple[int, bytes]] = []
+        for column, word in enumerate(FACET_WORDS):
+            if word is None:
+                continue
+            words = np.concatenate([facets[:, column], rest[column : column + 1]])
+            right = _is_word(text, words, word)
+            if not right.all():
+                bad.append((int(words[np.argmin(right)]), word))
+        if bad:
+            place, word = min(bad)
+            shown = text[place : place + 20].tobytes().split()[0].decode(errors="replace")
+            self._refuse(start + place - 1, f"{shown!r} where {word.decode()!r} is due")
+
+    def _bad_number(
+        self, text: NDArray[np.uint8], facets: NDArray[np.int64], start: int
+    ) -> InputError:
+        corner = facets[:, [8, 9, 10, 12, 13, 14, 16, 17, 18]].reshape(-1)
+        for place in corner.tolist():
+            word = text[place : place + 80].tobytes().split()[0]
+            try:
+                numbers(word, np.float64, 1)
+            except ValueError:
+                line = line_number(self._text, start + place - 1)
+                return contents_error(f"line {line}: {word[:30].decode(errors='replace')!r} is "
+                                      "not a number; repair the mesh")
+        raise AssertionError("every number can be read, all of them cannot")
+
+
+def _is_word(
+    text: NDArray[np.uint8], places: NDArray[np.int64], word: bytes
+) -> NDArray[np.bool_]:
+    """Where ``word`` stands at a place, in small letters or capitals, and ends there."""
+    last = len(text) - 1
+    right = text[np.minimum(places + len(word), last)] <= SPACE
+    for offset, letter in enumerate(word):
+        right &= (text[np.minimum(places + offset, last)] | 0x20) == letter
+    return right
