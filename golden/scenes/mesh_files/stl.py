@@ -118,10 +118,10 @@ class _Text:
         lines.text[ranges(begin + 1, length - 1)] = SPACE
         inside = np.repeat(~names, lines.count)
         words = lines.words[inside]
-        self._check_solids(words, places, opens, start)
         whole = len(words) // len(FACET_WORDS)
         facets = words[: whole * len(FACET_WORDS)].reshape(-1, len(FACET_WORDS))
         self._check_words(lines.text, facets, words[whole * len(FACET_WORDS) :], start)
+        self._check_solids(words, places, opens, start)
         taken = int(words[facets.size]) - 1 if len(words) > facets.size else len(stretch)
         bounds = np.append(facets[:, _BOUNDS].reshape(-1), taken + 1)
         of_vertex = np.tile(np.arange(len(_BOUNDS)) % 2 == 1, whole)

@@ -24,6 +24,7 @@ from .rows import Rows, binary_rows, text_rows
 
 #: The names of the list of a face's or strip's vertices.
 _INDICES: Final = ("vertex_indices", "vertex_index")
+_RESTART: Final = -1
 _COLORS: Final = (("red", "green", "blue"), ("r", "g", "b"),
                   ("diffuse_red", "diffuse_green", "diffuse_blue"))
 
@@ -82,8 +83,8 @@ def _take(tables: dict[str, tuple[Element, Rows]], reading: Reading) -> None:
             faces, of_vertex, None if of_face is None else cut.of_polygons(of_face))))
     if "tristrips" in tables:
         corners, sizes = _indices("tristrips", tables["tristrips"][1])
-        check_indices(corners[corners != -1], len(vertices))
-        faces = strip_triangles(corners, sizes, restart=-1)
+        check_indices(corners[corners != _RESTART], len(vertices))
+        faces = strip_triangles(corners, sizes, restart=_RESTART)
         reading.parts.append(Part(vertices, faces, corner_colors(faces, of_vertex, None)))
     if "edge" in tables:
         reading.note_count(tables["edge"][0].count,
@@ -99,8 +100,8 @@ def _indices(name: str, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.int64
                          "export the mesh again")
     items, sizes = found[0]
     corners = items.astype(np.int64)
-    if items.dtype.kind == "u":
-        corners[corners == 0xFFFFFFFF] = -1  # the restart of a strip
+    if name == "tristrips":
+        corners[corners == 0xFFFFFFFF] = _RESTART  # -1 in an unsigned list
     if items.dtype.kind == "f" and (corners != items).any():
         raise InputError("mesh: faces: a vertex number is no whole number; repair the mesh")
     return corners, sizes
