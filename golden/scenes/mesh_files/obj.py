@@ -88,7 +88,7 @@ class _File:
         of_vertex = None if np.isnan(colors).all() else _shades(colors)
         of_face = self.materials.of_faces(cut.of_polygons(np.concatenate(self.material)))
         self.reading.parts.append(Part(vertices, faces, corner_colors(faces, of_vertex, of_face)))
-        unused = len(vertices) - np.count_nonzero(_used(corners, len(vertices)))
+        unused = len(vertices) - int(np.count_nonzero(_used(corners, len(vertices))))
         if not self.left_out:
             self.reading.note_count(
                 unused, f"1 of {len(vertices)} vertices is in no face: if that is not meant, the "
@@ -114,13 +114,11 @@ class _File:
         lines = Lines(stretch, b"#")
         filled = lines.count > 0
         head = lines.words[lines.first[filled]]
-        after = np.minimum(head + 1, len(lines.text) - 1)
-        letter, blank = lines.text[head], lines.text[after] <= SPACE
+        letter, second, third = (lines.text[head + i] for i in range(3))
         kind = np.zeros(len(filled), np.uint8)  # 0: blank or passed over
-        single = blank & np.isin(letter, np.frombuffer(b"vf", np.uint8))
-        third = np.minimum(head + 2, len(lines.text) - 1)
-        data = ((letter == ord("v")) & np.isin(lines.text[after], np.frombuffer(b"tnp", np.uint8))
-                & (lines.text[third] <= SPACE))
+        single = (second <= SPACE) & ((letter == ord("v")) | (letter == ord("f")))
+        data = ((letter == ord("v")) & np.isin(second, np.frombuffer(b"tnp", np.uint8))
+                & (third <= SPACE))
         kind[filled] = np.where(single, letter, np.where(data, 0, 1))
         is_vertex, is_face = kind == ord("v"), kind == ord("f")
         # Where a line starts in the file: newline i of the stretch is one byte before.
@@ -250,7 +248,7 @@ class _File:
                 shown = " ".join(words.decode(errors="replace").split())[:60]
                 return contents_error(f"line {self._line(int(place[index]))}: cannot read the "
                                       f"{what} in {shown!r}; repair the mesh")
-        raise AssertionError("every line can be read, all of them cannot")
+        return contents_error("bytes that no text has between the numbers; repair the mesh")
 
 
 def _parsed(

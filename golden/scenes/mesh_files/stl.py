@@ -8,6 +8,7 @@ be read *and* a wrong count.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -140,7 +141,8 @@ class _Text:
         """Which lines open or end a solid; where the first word of each is; which open one."""
         filled = np.flatnonzero(lines.count > 0)
         head = lines.words[lines.first[filled]]
-        opens, ends = (_is_word(lines.text, head, word) for word in (b"solid", b"endsolid"))
+        opens, ends = (_are_words(lines.text, head[:, None], [word])[:, 0]
+                       for word in (b"solid", b"endsolid"))
         names = np.zeros(len(lines.count), np.bool_)
         names[filled] = opens | ends
         return names, head[opens | ends], opens[opens | ends]
@@ -178,18 +180,16 @@ class _Text:
         start: int,
     ) -> None:
         """Every keyword of a facet is in its place."""
-        bad: list[tuple[int, bytes]] = []
-        for column, word in enumerate(FACET_WORDS):
-            if word is None:
-                continue
-            words = np.concatenate([facets[:, column], rest[column : column + 1]])
-            right = _is_word(text, words, word)
+        columns = [i for i, word in enumerate(FACET_WORDS) if word is not None]
+        due = [word for word in FACET_WORDS if word is not None]
+        begun = [place for place, word in zip(rest.tolist(), FACET_WORDS, strict=False) if word]
+        for words in (facets[:, columns], np.array([begun], np.int64)):
+            right = _are_words(text, words, due[: words.shape[1]])
             if not right.all():
-                bad.append((int(words[np.argmin(right)]), word))
-        if bad:
-            place, word = min(bad)
-            shown = text[place : place + 20].tobytes().split()[0].decode(errors="replace")
-            self._refuse(start + place - 1, f"{shown!r} where {word.decode()!r} is due")
+                place = int(words.reshape(-1)[np.argmin(right)])
+                word = due[int(np.argmin(right)) % words.shape[1]].decode()
+                shown = text[place : place + 20].tobytes().split()[0].decode(errors="replace")
+                self._refuse(start + place - 1, f"{shown!r} where {word!r} is due")
 
     def _bad_number(
         self, text: NDArray[np.uint8], facets: NDArray[np.int64], start: int
@@ -203,15 +203,16 @@ class _Text:
                 line = line_number(self._text, start + place - 1)
                 return contents_error(f"line {line}: {word[:30].decode(errors='replace')!r} is "
                                       "not a number; repair the mesh")
-        raise AssertionError("every number can be read, all of them cannot")
+        return contents_error("bytes that no text has between the numbers; repair the mesh")
 
 
-def _is_word(
-    text: NDArray[np.uint8], places: NDArray[np.int64], word: bytes
+def _are_words(
+    text: NDArray[np.uint8], places: NDArray[np.int64], words: Sequence[bytes]
 ) -> NDArray[np.bool_]:
-    """Where ``word`` stands at a place, in small letters or capitals, and ends there."""
-    last = len(text) - 1
-    right = text[np.minimum(places + len(word), last)] <= SPACE
-    for offset, letter in enumerate(word):
-        right &= (text[np.minimum(places + offset, last)] | 0x20) == letter
-    return right
+    """Where ``words``, of up to eight letters, small or in capitals, stand: (n, words)."""
+    windows = np.lib.stride_tricks.sliding_window_view(text, 8)
+    eight = windows[places].view("<u8")[..., 0] | np.uint64(0x2020202020202020)
+    sizes = np.array([len(word) for word in words], np.int64)
+    keep = np.array([(1 << 8 * len(word)) - 1 for word in words], np.uint64)
+    right = np.array([int.from_bytes(word, "little") for word in words], np.uint64)
+    return np.asarray((eight & keep == right) & (text[places + sizes] <= SPACE), np.bool_)

@@ -19,6 +19,9 @@ STRETCH: Final = 1 << 18
 
 NEWLINE, SPACE = 10, 32
 
+#: Blanks behind the lines, so that a few bytes may be looked at from any word on.
+PADDING: Final = 9
+
 
 def plain_text(data: bytes) -> bytes:
     """The text without byte order mark, with a newline at the end of every line.
@@ -57,8 +60,8 @@ def stretch_from(text: bytes, start: int) -> bytes:
 class Lines:
     """Whole lines, each ended by a newline.
 
-    ``text``      uint8: one newline, then the lines; so a line and its newline are
-                  ``text[newlines[i] + 1 : newlines[i + 1] + 1]``
+    ``text``      uint8: one newline, the lines, ``PADDING`` blanks; so a line and its newline
+                  are ``text[newlines[i] + 1 : newlines[i + 1] + 1]``
     ``newlines``  int64 (lines + 1,)
     ``words``     int64 (w,): where each word starts in ``text``
     ``first``     int64 (lines,): index in ``words`` of the line's first word
@@ -69,7 +72,7 @@ class Lines:
     """
 
     def __init__(self, lines: bytes, comment: bytes | None = None) -> None:
-        self.text = np.frombuffer(b"\n" + lines, np.uint8).copy()
+        self.text = np.frombuffer(b"\n" + lines + b" " * PADDING, np.uint8).copy()
         self.newlines = np.flatnonzero(self.text == NEWLINE)
         if comment is not None and comment in lines:
             self._blank_comments(comment)
@@ -86,7 +89,8 @@ class Lines:
 
     def bytes_of(self, chosen: NDArray[np.bool_]) -> bytes:
         """The text of some lines, ``chosen`` bool (lines,)."""
-        return self.text[1:][np.repeat(chosen, np.diff(self.newlines))].tobytes()
+        lines = self.text[1 : self.newlines[-1] + 1]
+        return lines[np.repeat(chosen, np.diff(self.newlines))].tobytes()
 
 
 def ranges(starts: NDArray[np.int64], lengths: NDArray[np.int64]) -> NDArray[np.int64]:

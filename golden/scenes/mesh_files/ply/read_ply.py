@@ -99,9 +99,9 @@ def _indices(name: str, rows: Rows) -> tuple[NDArray[np.int64], NDArray[np.int64
         raise InputError(f"mesh: faces: element {name!r} has no list {' or '.join(_INDICES)}; "
                          "export the mesh again")
     items, sizes = found[0]
-    corners = items.astype(np.int64)
-    if name == "tristrips":
-        corners[corners == 0xFFFFFFFF] = _RESTART  # -1 in an unsigned list
+    corners = items.astype(np.int64, copy=False)
+    if name == "tristrips":  # -1 in an unsigned list
+        corners = np.where(corners == 0xFFFFFFFF, _RESTART, corners)
     if items.dtype.kind == "f" and (corners != items).any():
         raise InputError("mesh: faces: a vertex number is no whole number; repair the mesh")
     return corners, sizes

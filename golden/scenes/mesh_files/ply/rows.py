@@ -106,7 +106,8 @@ def _table(element: Element, values: NDArray[Any]) -> Rows | None:
         length = int(first[0])
         if (first != length).any() or not 0 <= length <= values.shape[1] - at:
             return None
-        rows.lists[p.name] = (values[:, at : at + length].reshape(-1), first.astype(np.int64))
+        rows.lists[p.name] = (values[:, at : at + length].reshape(-1),
+                              np.full(len(values), length))
         at += length
     return rows if at == values.shape[1] else None
 
@@ -123,7 +124,7 @@ def _bad_line(
             shown = " ".join(words.decode(errors="replace").split())[:60]
             return contents_error(f"line {line}: cannot read {shown!r} as a row of "
                                   f"{element.name!r}; repair the file")
-    raise AssertionError("every line can be read, all of them cannot")
+    return contents_error("bytes that no text has between the numbers; repair the file")
 
 
 def binary_rows(data: bytes, start: int, element: Element) -> tuple[Rows, int]:
