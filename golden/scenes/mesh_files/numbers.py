@@ -20,7 +20,7 @@ def numbers(
 
     Every numpy says the same: older ones only warn of what they cannot read.
     """
-    if not text.strip():
+    if not count and not text.strip():
         values = np.zeros(0, kind)
     elif kind is np.float64 and (fixed := _fixed_point(text, count)) is not None:
         return fixed

@@ -95,8 +95,8 @@ class _File:
                 "file is cut short", f"{{}} of {len(vertices)} vertices are in no face: if that is "
                 "not meant, the file is cut short")
         for what, count in self.left_out.items():
-            self.reading.note_count(count, f"1 line of {what} is left out: only faces are drawn",
-                                    f"{{}} lines of {what} are left out: only faces are drawn")
+            self.reading.note_count(count, f"1 element of {what} is left out: only faces are drawn",
+                                    f"{{}} elements of {what} are left out: only faces are drawn")
         if self.unknown:
             word, place = self.unknown[0]
             line = self._line(place)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .reading import contents_error
 
 #: Bytes of text taken at a time.
-STRETCH: Final = 1 << 18
+STRETCH: Final = 1 << 19
 
 NEWLINE, SPACE = 10, 32
 
@@ -90,6 +90,8 @@ class Lines:
     def bytes_of(self, chosen: NDArray[np.bool_]) -> bytes:
         """The text of some lines, ``chosen`` bool (lines,)."""
         lines = self.text[1 : self.newlines[-1] + 1]
+        if chosen.all():
+            return lines.tobytes()
         return lines[np.repeat(chosen, np.diff(self.newlines))].tobytes()
 
 

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import logging
 
 import numpy as np
 import pytest
@@ -240,16 +239,6 @@ def test_the_mesh_itself_names_the_bad_face():
         Mesh(VERTICES, FACES, COLORS)
 
 
-def test_the_library_is_left_as_it_was(tmp_path):
-    logger = logging.getLogger("trimesh")
-    with pytest.raises(InputError):
-        load_mesh(tmp_path / "a.obj")
-    (tmp_path / "a.obj").write_bytes(b"\xff")
-    with pytest.raises(InputError):
-        load_mesh(tmp_path / "a.obj")
-    assert not logger.disabled
-
-
 # ---- degenerate faces
 
 
@@ -304,3 +293,20 @@ def test_edges_stay_sharp_and_facets_flat():
     of_face = np.repeat(face_normals(smooth)[:, None], 3, axis=1)
     assert np.array_equal(corner_normals(faceted), of_face)
     assert not np.allclose(corner_normals(smooth), of_face, atol=0.1)
+
+
+# ---- what is left out
+
+
+def test_what_is_left_out_is_a_warning_of_the_display_list(tmp_path):
+    (tmp_path / "a.obj").write_bytes(obj(faces="f 1 2 3\nf 1 1 2\nl 1 2\n"))
+    assert make_display_list(tmp_path / "a.obj").notes == (
+        "1 element of lines is left out: only faces are drawn",
+        "1 of 2 faces are degenerate and draw nothing")
+
+
+def test_nothing_but_what_is_left_out(tmp_path, capfd):
+    (tmp_path / "a.obj").write_bytes(obj(faces="l 1 2\n"))
+    assert complain(tmp_path / "a.obj", capfd) == (
+        "faces: there are none (1 element of lines is left out: only faces are drawn); export the "
+        "mesh with its triangles")

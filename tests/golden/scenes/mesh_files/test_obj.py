@@ -111,9 +111,9 @@ def test_a_far_line_is_named_and_stretches_leave_no_seam(tmp_path):
 
 
 @pytest.mark.parametrize("line, note", [
-    ("l 1 2 3", "1 line of lines is left out: only faces are drawn"),
-    ("p 1\np 2", "2 lines of points are left out: only faces are drawn"),
-    ("surf 0 1 0 1 1 2", "1 line of surfaces is left out: only faces are drawn"),
+    ("l 1 2 3", "1 element of lines is left out: only faces are drawn"),
+    ("p 1\np 2", "2 elements of points are left out: only faces are drawn"),
+    ("surf 0 1 0 1 1 2", "1 element of surfaces is left out: only faces are drawn"),
     ("F 1 2 3", "1 line is left out: line 9 starts with 'F', which OBJ does not know"),
     ("f 1 2", "1 of 5 faces has fewer than three corners and is left out"),
     ("f", "1 of 5 faces has fewer than three corners and is left out"),
