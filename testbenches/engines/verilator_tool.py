@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import importlib.util
 import os
 import shutil
+import signal
 import subprocess
 import sys
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+from .plain_paths import plain_paths
 
 
 class ToolMissingError(RuntimeError):
@@ -20,11 +26,12 @@ class VerilatorTool:
     """Verilator's folder and the environment to run it in.
 
     ``environment`` has the folder's ``bin`` first on PATH, so that no distribution's older
-    Verilator is taken, and ``VERILATOR_ROOT``.
+    Verilator is taken, and ``VERILATOR_ROOT``.  ``python`` is for the makefile.
     """
 
     root: Path
     compiler: str
+    python: Path = Path(sys.executable)
 
     @property
     def executable(self) -> Path:
@@ -41,23 +48,43 @@ class VerilatorTool:
         need not be on PATH, and gives the option for a precompiled header no value: say all anew.
         """
         return ["-MAKEFLAGS", f"CXX={self.compiler} LINK={self.compiler} AR=ar "
-                              f"PYTHON3={sys.executable} "
+                              f"PYTHON3={self.python} "
                               "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread"]
 
     def version(self) -> str:
         """What ``--version`` prints; part of what a cached model depends on."""
         done = subprocess.run([self.executable, "--version"], env=self.environment,
-                              capture_output=True, text=True, check=False)
+                              capture_output=True, text=True, errors="replace", check=False)
         if done.returncode:
             raise ToolMissingError(f"Verilator does not run: {_last_line(done.stderr)}")
         return done.stdout.strip()
 
+    @contextmanager
+    def plain(self) -> Iterator[VerilatorTool]:
+        """The same tool under paths that make can take, within."""
+        with plain_paths(self.root, self.python) as (root, python):
+            yield replace(self, root=root, python=python)
+
     def run(self, arguments: list[str], folder: Path) -> None:
-        """Run Verilator in ``folder``; ``ToolMissingError`` with its last word where it fails."""
-        done = subprocess.run([self.executable, *arguments], env=self.environment, cwd=folder,
-                              capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise ToolMissingError(f"Verilator cannot build the model: {_last_line(done.stderr)}")
+        """Run Verilator in ``folder``, and what it calls.
+
+        Raises ``ToolMissingError`` with its last word where it fails, ``OSError`` where that is for
+        want of space.
+        """
+        # Messages in English, whatever the language here: one of them is looked for.
+        with subprocess.Popen([self.executable, *arguments], cwd=folder, start_new_session=True,
+                              env=self.environment | {"LC_ALL": "C"}, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True, errors="replace") as process:
+            try:
+                _, errors = process.communicate()
+            except BaseException:
+                # make and the compilers are its children: none may write on.
+                os.killpg(process.pid, signal.SIGKILL)
+                raise
+        if process.returncode and os.strerror(errno.ENOSPC) in errors:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
+        if process.returncode:
+            raise ToolMissingError(f"Verilator cannot build the model: {_last_line(errors)}")
 
 
 def find_verilator() -> VerilatorTool:
@@ -71,7 +98,7 @@ def find_verilator() -> VerilatorTool:
     for tool in ("make", "perl"):
         if shutil.which(tool) is None:
             raise ToolMissingError(f"Verilator needs {tool}, which is not on PATH")
-    wanted = os.environ.get("CXX")
+    wanted = os.environ.get("CXX", "").strip()
     candidates = [wanted] if wanted else ["g++", "clang++"]
     for compiler in candidates:
         if shutil.which(compiler.split()[0]) is not None:
@@ -80,5 +107,6 @@ def find_verilator() -> VerilatorTool:
 
 
 def _last_line(text: str) -> str:
-    lines = [line for line in text.splitlines() if "rror" in line] or text.splitlines()
+    lines = text.splitlines()
+    lines = [line for line in lines if "rror" in line or "***" in line] or lines
     return lines[0].strip() if lines else "no message"

