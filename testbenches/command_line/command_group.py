@@ -93,10 +93,9 @@ def _unforeseen(error: Exception) -> str:
     """A line for what is neither wrong input nor a machine's fault, as far as anybody knew."""
     if os.environ.get(TRACEBACK_VARIABLE):
         _say("".join(traceback.format_exception(error)).rstrip())
-    if isinstance(error, OSError):
+    if isinstance(error, OSError) and error.strerror:
         place = _OUTPUT if _while_printing(error) else error.filename
-        reason = error.strerror or type(error).__name__
-        return reason if place is None else f"{place}: {reason}"
+        return error.strerror if place is None else f"{place}: {error.strerror}"
     return (f"{type(error).__name__}: {error} (set {TRACEBACK_VARIABLE}=1 to see where, and report "
             "it, please)")
 

@@ -107,6 +107,6 @@ def find_verilator() -> VerilatorTool:
 
 
 def _last_line(text: str) -> str:
-    lines = text.splitlines()
-    lines = [line for line in lines if "rror" in line or "***" in line] or lines
-    return lines[0].strip() if lines else "no message"
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    telling = [line for line in lines if "rror" in line or "***" in line] or lines
+    return telling[0] if telling else "no message"

@@ -21,6 +21,7 @@ from ..machine_options import (
     option_words,
     resolution_warnings,
 )
+from ..support.any_characters import readable
 from ..support.atomic_output import atomic_file, output_errors
 
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
@@ -108,7 +109,7 @@ def _export(output: Path, scene: str | Path | None, options: MachineOptions,
                     WAIVERS.read_text("utf-8"))
         with output_errors(output, "-o"):
             for place, content in zip(places, contents, strict=True):
-                place.write_text(content, encoding="utf-8", newline="\n")
+                place.write_text(readable(content), encoding="utf-8", newline="\n")
     return Export(configuration, output, description, waivers, facts["top"], text.count("\n"),
                   precision, (*notes, *resolution_warnings(configuration)))
 

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from ..reports.page import page_environment
+from ..support.any_characters import readable
 from .precision_chart import precision_svg, save_precision_png
 from .precision_facts import precision_facts
 from .precision_table import headline, remarks, tables
@@ -19,7 +20,8 @@ def write_precision_report(precision: Precision, folder: Path) -> None:
     """Write ``PRECISION_FILES`` to ``folder``, which exists."""
     facts = json.dumps(precision_facts(precision), indent=2) + "\n"
     (folder / "precision.json").write_text(facts, encoding="utf-8")
-    (folder / "precision.html").write_text(precision_page(precision), encoding="utf-8")
+    (folder / "precision.html").write_text(readable(precision_page(precision)),
+                                           encoding="utf-8")
     save_precision_png(precision, folder / "precision.png")
 
 

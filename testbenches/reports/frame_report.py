@@ -12,6 +12,7 @@ from ...golden.reference.exact import depth_complexity
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..frames.rendering import Rendering
+from ..support.any_characters import readable
 from .activity_chart import activity_chart, timeline_chart
 from .frame_facts import report_facts
 from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
@@ -55,7 +56,8 @@ def write_report(rendering: Rendering, folder: Path) -> None:
     (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
     (folder / "difference.png").write_bytes(png(color_difference(rendering)))
     rendering.scene.display_list.save(folder / "display_list.npz")
-    (folder / "report.html").write_text(report_page(rendering, facts), encoding="utf-8")
+    (folder / "report.html").write_text(readable(report_page(rendering, facts)),
+                                        encoding="utf-8")
 
 
 def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:

@@ -305,13 +305,16 @@ def test_a_failed_run_leaves_the_last_report(place, engine, monkeypatch):
 # Interruption, as the system does it
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143),
+                                              (signal.SIGHUP, 129)])
 def test_interrupted(place, number, status):
     Path("report").mkdir()
     Path("report/report.html").write_text("the last one")
     before = listing()
     with subprocess.Popen([*COMMAND, *LONG, "--out", "report", "--waveform", "wave.vcd"],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          # Whoever runs the tests with nohup has the signal ignored.
+                          preexec_fn=lambda: signal.signal(number, signal.SIG_DFL)) as process:
         try:
             deadline = time.monotonic() + 60
             while not (list(Path("report").glob(".cardcage-*"))

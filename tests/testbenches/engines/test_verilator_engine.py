@@ -5,11 +5,14 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from refusals import assert_one_line
 
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import exact
@@ -38,10 +41,11 @@ except ToolMissingError as missing:
 
 @pytest.fixture(scope="module", autouse=True)
 def cache(tmp_path_factory):
-    """An own cache, so that building is tested and no test finds an old model.  No ``python`` on
-    PATH works: whoever calls ``.venv/bin/cardcage`` by its name often has ``python3`` only.
+    """An own cache, so that building is tested and no test finds an old model; make cannot work in
+    a folder of such a name.  No ``python`` on PATH works: whoever calls ``.venv/bin/cardcage`` by
+    its name often has ``python3`` only.
     """
-    folder, commands = tmp_path_factory.mktemp("cache"), tmp_path_factory.mktemp("commands")
+    folder, commands = tmp_path_factory.mktemp("my cäche"), tmp_path_factory.mktemp("commands")
     (commands / "python").write_text("#!/bin/sh\nexit 127\n")
     (commands / "python").chmod(0o755)
     with pytest.MonkeyPatch.context() as patch:
@@ -51,8 +55,12 @@ def cache(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def engine(cache):
-    engine = VerilatorEngine()
+def engine(cache, tmp_path_factory):
+    """Installed where make cannot reach either."""
+    tool, home = find_verilator(), tmp_path_factory.mktemp("my $home")
+    (home / "verilator").symlink_to(tool.root)
+    (home / "python").symlink_to(sys.executable)
+    engine = VerilatorEngine(replace(tool, root=home / "verilator", python=home / "python"))
     engine.build(CONFIGURATION)
     return engine
 
@@ -157,7 +165,7 @@ from cardcage.testbenches.support.cache import cached
 def build(folder):
     time.sleep(0.5)
     (folder / "machine").write_text("whole")
-path, _ = cached("key", build)
+path, _ = cached("0" * 32, build)
 print((path / "machine").read_text())
 """
 
@@ -167,7 +175,7 @@ def test_two_processes_at_once_do_not_harm_the_cache(tmp_path):
     running = [subprocess.Popen([sys.executable, "-c", BUILD], env=environment, text=True,
                                 stdout=subprocess.PIPE) for _ in range(4)]
     assert [process.communicate(timeout=60)[0] for process in running] == ["whole\n"] * 4
-    assert [path.name for path in tmp_path.iterdir()] == ["key"]
+    assert [path.name for path in tmp_path.iterdir()] == ["0" * 32]
 
 
 def test_an_interrupted_build_leaves_nothing(tmp_path, monkeypatch):
@@ -188,14 +196,6 @@ def test_a_cache_that_cannot_be_written_is_replaced(tmp_path, monkeypatch):
     path, fresh = kept.cached("key", lambda folder: (folder / "machine").touch())
     assert fresh and (path / "machine").exists()
     assert tmp_path not in path.parents
-
-
-def test_the_cache_command(tmp_path, monkeypatch):
-    monkeypatch.setenv(kept.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
-    kept.cached("key", lambda folder: (folder / "model").write_bytes(bytes(3_000_000)))
-    assert "3.0 MB in" in CliRunner().invoke(main, ["cache"]).output
-    assert "3.0 MB removed" in CliRunner().invoke(main, ["cache", "--clear"]).output
-    assert not (tmp_path / "cache").exists()
 
 
 def render(folder, *arguments):
@@ -229,6 +229,39 @@ def test_a_compiler_that_fails_is_named(tmp_path, monkeypatch):
     assert "Verilator cannot build the model" in result.stderr
     result = render(tmp_path / "named", "--engine", "verilator")
     assert result.exit_code == 2 and result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("program", [None, b"#!/no/such/program\n", b"\x7fELF no program", b""])
+def test_a_model_that_cannot_be_started(tmp_path, monkeypatch, program):
+    """As in a cache on a file system that executes nothing: auto says so and takes pysim."""
+    monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
+    monkeypatch.setattr(verilator_engine, "cached", lambda key, build: (tmp_path, False))
+    (tmp_path / "machine").write_bytes(program or b"#!/bin/sh\n")
+    (tmp_path / "machine").chmod(0o644 if program is None else 0o755)
+    result = render(tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    assert result.stderr.count("\n") == 1
+    assert f"{tmp_path / 'machine'}" in result.stderr and "simulated with pysim" in result.stderr
+    result = render(tmp_path / "named", "--engine", "verilator")
+    assert result.exit_code == 2
+    assert_one_line(result.stderr)
+    assert not (tmp_path / "named").exists()
+
+
+def test_no_room_for_the_results(engine, tmp_path):
+    """The program says so: results that are cut short would look like a machine that hangs."""
+    program, _ = engine.build(CONFIGURATION)
+    (tmp_path / "commands").write_bytes(b"")
+    done = subprocess.run([program, tmp_path / "commands", "/dev/full", "0", "-1", "-1", "100"],
+                          capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "/dev/full: No space left on device\n"
+
+
+def test_no_folder_for_temporary_files(engine, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
+    with pytest.raises(ToolMissingError, match=r"none.*No such file.*TMPDIR"):
+        engine.run(frame_job(CONFIGURATION, LIST))
 
 
 def test_the_report_tells_the_engine_and_its_times(engine, tmp_path, monkeypatch):

@@ -141,7 +141,8 @@ def test_a_failure_leaves_the_last_export(monkeypatch):
     before = listing()
     monkeypatch.setattr("cardcage.testbenches.export.export_files.json.dumps",
                         lambda *_, **__: 1 / 0)
-    assert isinstance(run(*TINY, "--shading", "flat").exception, ZeroDivisionError)
+    result = run(*TINY, "--shading", "flat")
+    assert result.exit_code == 2 and "ZeroDivisionError" in result.stderr
     assert listing() == before
 
 
