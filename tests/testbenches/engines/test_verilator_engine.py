@@ -236,7 +236,7 @@ def test_a_model_that_cannot_be_started(tmp_path, monkeypatch, program):
     """As in a cache on a file system that executes nothing: auto says so and takes pysim."""
     monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
     monkeypatch.setattr(verilator_engine, "cached", lambda key, build: (tmp_path, False))
-    (tmp_path / "machine").write_bytes(program or b"#!/bin/sh\n")
+    (tmp_path / "machine").write_bytes(b"#!/bin/sh\n" if program is None else program)
     (tmp_path / "machine").chmod(0o644 if program is None else 0o755)
     result = render(tmp_path / "out")
     assert result.exit_code == 0, result.output

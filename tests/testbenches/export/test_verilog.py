@@ -64,6 +64,43 @@ def test_a_machine_that_sets_triangles_up_is_accepted(tmp_path):
     assert timing["interval_clocks"] > 3 * 28 and timing["latency_clocks"] > 28
 
 
+#: Machines of which a part has nothing to choose from: one element, one unit, one pixel, one word.
+SMALLEST = [
+    {"cards": "PM", "width": 1, "height": 1, "setup": "hardware", "setup_interval": 1},
+    {"cards": "PM", "width": 1, "height": 16, "memory_ports": 1, "shading": "flat"},
+    {"cards": "PMM", "width": 16, "height": 1, "memory_ports": 1, "skew": True},
+    {"cards": "PMMMM", "width": 8, "height": 8, "words": 1, "shading": "flat", "fraction_bits": 0},
+    {"cards": "PMPM", "width": 16, "height": 16, "block": 4, "setup": "hardware",
+     "setup_interval": 256, "shading": "flat"},
+]
+
+
+@pytest.mark.parametrize("fields", SMALLEST, ids=lambda fields: fields["cards"])
+def test_the_smallest_machines_are_accepted(tmp_path, fields):
+    text = machine_verilog(MachineConfiguration(**fields))
+    assert_all_used(text, "machine")
+    (tmp_path / "machine.v").write_text(text)
+    (tmp_path / "machine.vlt").write_text(WAIVERS.read_text())
+    assert verilator_lint(tmp_path, "machine.vlt", "machine.v") == (0, "")
+
+
+def assert_all_used(text, top):
+    """Every module but the first is instantiated."""
+    modules = re.findall(r"^module (\S+?)\(", text, re.MULTILINE)
+    assert modules[0] == top
+    for module in modules[1:]:
+        assert re.search(rf"^  {re.escape(module)} \S+ \($", text, re.MULTILINE), module
+
+
+def test_what_nobody_instantiates_is_not_written():
+    """In a cage of one unit there is nothing to walk block by block."""
+    one, two = (component_verilog(component_for(MachineConfiguration(
+        **PRESETS["tiny"] | {"cards": cards}), "triangle_rows"), "triangle_rows")
+        for cards in ("PM", "PMM"))
+    module = "\nmodule triangle_rows__block("
+    assert module in two and module not in one
+
+
 def test_each_waiver_is_needed(texts, tmp_path):
     (tmp_path / "machine.v").write_text(texts("tiny", "flat"))
     waivers = WAIVERS.read_text()
@@ -102,6 +139,7 @@ def test_ports_come_from_the_signature(tmp_path, name):
     expected = component_ports(component)
     described = described_ports(component)
     text = component_verilog(component, name)
+    assert_all_used(text, name)
     ports = declared_ports(text, name)
     clocked = {"clk": ("input", 1), "rst": ("input", 1)}
     assert {port.name: (port.direction, port.width) for port in expected} == {

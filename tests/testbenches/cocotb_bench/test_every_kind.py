@@ -1,0 +1,112 @@
+"""The take-home bench takes every kind of machine that ``export`` makes.
+
+Most are simulated in Amaranth's simulator, and what passed there is shown to the bench's checks;
+some go all the way: exported, built by a Verilog simulator, driven by cocotb.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind, opcode_of
+from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck
+from cardcage.testbenches.cocotb_bench.exchange import read_configuration
+from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels
+from cardcage.testbenches.cocotb_bench.simulators import SIMULATORS, find_simulator
+from cardcage.testbenches.cocotb_bench.violation import ProtocolError
+from cardcage.testbenches.command_line.cli import main
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.engines.verilator_tool import ToolMissingError
+from cardcage.testbenches.frames.frame_job import frame_job
+from cardcage.testbenches.machine_options import MachineOptions, machine_for_scene
+
+SCENE = "random:n=6,size=6,seed=2"
+
+#: Each choice of ``export`` at least twice, each set-up with each number of ports.
+KINDS = [
+    {"cards": "PM", "setup": "host", "memory_ports": 1, "shading": "flat"},
+    {"cards": "PMM", "setup": "host", "memory_ports": 2, "words": 8},
+    {"cards": "PMM", "setup": "host", "memory_ports": 1, "skew": True},
+    {"cards": "PM", "setup": "small", "memory_ports": 1},
+    {"cards": "PMPM", "setup": "small", "memory_ports": 2, "block": 2, "shading": "flat"},
+    {"cards": "PMPM", "setup": "fast", "memory_ports": 1, "block": 4, "words": 8},
+    {"cards": "PMMPMM", "setup": "fast", "memory_ports": 2, "skew": True, "shading": "flat"},
+]
+
+
+def named(kind):
+    return "-".join(f"{name}={value}" for name, value in kind.items())
+
+
+def talk(configuration, commands, run):
+    """The bench's check of a conversation, after all that a recorded run said."""
+    check = ConversationCheck(configuration, commands)
+    said = [(cycle, False, ()) for cycle in run.accepted]
+    said += [(cycle, True, (kind, value)) for kind, value, cycle in run.responses]
+    for cycle, answered, word in sorted(said, key=lambda entry: entry[:2]):
+        if answered:
+            check.response(int(cycle), *word)
+        else:
+            check.command(int(cycle))
+    return check
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=named)
+def test_the_checks_take_it(kind):
+    loaded, configuration = machine_for_scene(SCENE, MachineOptions(size=(8, 8), **kind))
+    job = frame_job(configuration, loaded.display_list, stall_seed=3)
+    triangle = Opcode.PREPARED_TRIANGLE if kind["setup"] == "host" else Opcode.TRIANGLE
+    assert triangle in {opcode_of(word) for word in job.commands}
+    run = PysimEngine().run(job)
+    assert talk(configuration, job.commands, run).complete
+    [booted] = [cycle for kind, _, cycle in run.responses if kind == ResponseKind.BOOTED]
+    [shown] = [cycle for kind, _, cycle in run.responses if kind == ResponseKind.FRAME_SHOWN]
+    [ended] = [int(cycle) for cycle, word in zip(run.accepted, job.commands, strict=True)
+               if opcode_of(word) == Opcode.FRAME_END]
+    scans = masked(run.scans, owned_pixels(configuration))
+    assert any(scan.cycle > shown for scan in scans)
+    check_scans(scans, booted + 100, [ended], [shown])
+    # A machine of that kind which does not know its triangles is caught.
+    place = next(number for number, (kind, *_) in enumerate(run.responses)
+                 if kind == ResponseKind.FRAME_DRAWN)
+    run.responses.insert(place, (ResponseKind.ERROR, Fault.UNKNOWN_COMMAND,
+                                 run.responses[place][2]))
+    with pytest.raises(ProtocolError, match="FRAME_DRAWN is due"):
+        talk(configuration, job.commands, run)
+
+
+@pytest.fixture(scope="module")
+def simulator():
+    for name in SIMULATORS:
+        try:
+            find_simulator(name)
+        except ToolMissingError:
+            continue
+        return name
+    return pytest.skip("neither Verilator nor Icarus Verilog is here")
+
+
+@pytest.mark.parametrize("options", [
+    ["--cards", "PM", "--setup", "small"],
+    ["--cards", "PMM", "--setup", "fast", "--memory-ports", "1", "--words", "4"],
+], ids=lambda options: "-".join(options).replace("--", ""))
+def test_from_export_to_the_verdict(tmp_path, simulator, options):
+    """As the page says: export a machine for a list, check it, be told that it is equal."""
+    make_display_list(SCENE, width=4, height=4, shading="flat").display_list.save(
+        tmp_path / "list.npz")
+    verilog = tmp_path / "machine.v"
+    exported = CliRunner().invoke(main, ["export", str(tmp_path / "list.npz"), *options,
+                                         "-o", str(verilog)])
+    assert exported.exit_code == 0, exported.output
+    assert read_configuration(verilog.with_suffix(".json")).setup == "hardware"
+    checked = CliRunner().invoke(main, ["check-verilog", str(verilog), str(tmp_path / "list.npz"),
+                                        "--simulator", simulator])
+    assert checked.exit_code == 0, checked.output
+    assert checked.stdout.startswith("equal: 16 colours and ")
+    opcodes = json.loads(Path(tmp_path, "machine.json").read_text())["commands"]["opcodes"]
+    assert "TRIANGLE" in {entry["name"] for entry in opcodes}
