@@ -46,7 +46,7 @@ def check_verilog_command(
 
     \b
     Exit status: 0 done and equal, 1 the picture differs from the golden model or a rule of the
-    documents is broken, 2 the input is wrong or the simulator is missing.
+    documents is broken, 2 the input or the system is at fault or the simulator is missing.
     """
     machine = read_configuration(configuration or verilog.with_suffix(".json"))
     display_list = DisplayList.load(list_file)

@@ -84,7 +84,8 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
       cardcage bench --json now.json --against before.json
       cardcage bench --all --json everything.json
 
-    Exit status: 0 every picture equal and nothing slower, 1 otherwise.
+    Exit status: 0 every picture equal and nothing slower, 1 a picture differs or a figure of
+    --against is better, 2 the input or the system is at fault.
     """
     chosen = {name: values for name, values in axes.items() if values is not None}
     standard = vars(ALL_MACHINES) if everything else {}

@@ -26,7 +26,7 @@ class VerilatorTool:
     """Verilator's folder and the environment to run it in.
 
     ``environment`` has the folder's ``bin`` first on PATH, so that no distribution's older
-    Verilator is taken, and ``VERILATOR_ROOT``.  ``python`` is for the makefile.
+    Verilator is taken, ``VERILATOR_ROOT`` and ``VERILATOR_BIN``.  ``python`` is for the makefile.
     """
 
     root: Path
@@ -40,7 +40,9 @@ class VerilatorTool:
     @property
     def environment(self) -> dict[str, str]:
         path = str(self.root / "bin") + os.pathsep + os.environ.get("PATH", "")
-        return os.environ | {"VERILATOR_ROOT": str(self.root), "PATH": path}
+        # Verilator's own script follows links and then trips over a blank, unless told.
+        return os.environ | {"VERILATOR_ROOT": str(self.root), "PATH": path,
+                             "VERILATOR_BIN": str(self.root / "bin" / "verilator_bin")}
 
     @property
     def make_flags(self) -> list[str]:
@@ -53,8 +55,9 @@ class VerilatorTool:
 
     def version(self) -> str:
         """What ``--version`` prints; part of what a cached model depends on."""
-        done = subprocess.run([self.executable, "--version"], env=self.environment,
-                              capture_output=True, text=True, errors="replace", check=False)
+        with self.plain() as tool:
+            done = subprocess.run([tool.executable, "--version"], env=tool.environment,
+                                  capture_output=True, text=True, errors="replace", check=False)
         if done.returncode:
             raise ToolMissingError(f"Verilator does not run: {_last_line(done.stderr)}")
         return done.stdout.strip()

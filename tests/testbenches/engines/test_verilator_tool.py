@@ -64,6 +64,16 @@ def tool(folder: Path, script: str) -> VerilatorTool:
     return VerilatorTool(folder, "g++", Path(sys.executable))
 
 
+def test_the_tools_own_script_sees_plain_paths(tmp_path):
+    """The wheel's is Perl that hands the real path of its folder to a shell."""
+    odd = tmp_path / "my home"
+    odd.mkdir()
+    made = tool(odd, 'exec $VERILATOR_BIN "$@"')
+    (odd / "bin/verilator_bin").write_text("#!/bin/sh\necho version $1\n")
+    (odd / "bin/verilator_bin").chmod(0o755)
+    assert made.version() == "version --version"
+
+
 def test_the_makefile_sees_plain_paths(tmp_path):
     odd = tmp_path / "my home"
     odd.mkdir()
