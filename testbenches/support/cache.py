@@ -28,7 +28,7 @@ def content_hash(parts: Iterable[str]) -> str:
     """One name for a list of texts; their borders count."""
     digest = hashlib.sha256()
     for part in parts:
-        encoded = part.encode()
+        encoded = part.encode("utf-8", "surrogatepass")  # a file name may be part of it
         digest.update(len(encoded).to_bytes(8, "little") + encoded)
     return digest.hexdigest()[:32]
 

@@ -35,7 +35,7 @@ def program(*arguments, **options):
 
 
 @pytest.mark.parametrize("arguments", [
-    ["scenes"], ["scenes", "--hard", "--json"], ["--help"], ["--version"], ["cache"],
+    ["scenes", "--hard", "--json"], ["--version"],
     ["render", SCENE, *TINY, "--out", "report"],
 ])
 def test_a_full_output(place, arguments):

@@ -66,7 +66,8 @@ def test_a_machine_that_sets_triangles_up_is_accepted(tmp_path):
 
 #: Machines of which a part has nothing to choose from: one element, one unit, one pixel, one word.
 SMALLEST = [
-    {"cards": "PM", "width": 1, "height": 1, "setup": "hardware", "setup_interval": 1},
+    {"cards": "PM", "width": 1, "height": 1, "setup": "hardware", "setup_interval": 1,
+     "shading": "flat"},
     {"cards": "PM", "width": 1, "height": 16, "memory_ports": 1, "shading": "flat"},
     {"cards": "PMM", "width": 16, "height": 1, "memory_ports": 1, "skew": True},
     {"cards": "PMMMM", "width": 8, "height": 8, "words": 1, "shading": "flat", "fraction_bits": 0},
