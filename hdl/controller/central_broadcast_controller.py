@@ -1,7 +1,7 @@
 """The central broadcast controller: boots the cage, announces triangles, swaps pictures."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
@@ -12,6 +12,7 @@ from ..backplane.connectors import BroadcastLines, Connector, PictureLines
 from ..backplane.words import (
     Operation,
     broadcast_layout,
+    prepared_triangle_layout,
     response_fields,
     response_layout,
     response_value,
@@ -34,9 +35,11 @@ class CentralBroadcastController(wiring.Component):
     has (``FrameTags``).  A finished picture is shown from the start of the next
     scan on; until then the old one stays, whole.
 
-    Prepared triangles pass straight from the command to the broadcast.  With set-up
-    in hardware the others go through ``TriangleSetup``, which works on the next ones
-    while the processing elements draw; every other command waits until it is empty.
+    Prepared triangles pass straight from the command to the broadcast, but for ``top`` and
+    ``bottom``: past the picture's last row they become its height.  So, whatever the host sends,
+    no processing element sees a row that is not there.  With set-up in hardware, which holds
+    rows to the picture itself, the others go through ``TriangleSetup``, which works on the next
+    ones while the processing elements draw; every other command waits until it is empty.
 
     Latency: a prepared triangle is broadcast in the clock in which it is taken, another
     one as late as ``TriangleSetup`` says.  Throughput: a prepared triangle a clock while
@@ -224,7 +227,7 @@ class CentralBroadcastController(wiring.Component):
                     m.d.comb += [self._setup.vertices.valid.eq(1),
                                  self.commands.ready.eq(self._setup.vertices.ready)]
             with m.Case(Opcode.PREPARED_TRIANGLE):
-                m.d.comb += self._packet.body.draw.eq(self._body)
+                self._hold_to_picture(m)
                 self._announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
@@ -244,6 +247,18 @@ class CentralBroadcastController(wiring.Component):
             with m.Default():
                 m.d.comb += self.commands.ready.eq(1)
                 m.next = "UNKNOWN"
+
+    def _hold_to_picture(self, m):
+        """The packet is the offered prepared triangle, without rows past the picture."""
+        layout = prepared_triangle_layout(self.configuration)
+        offered, draw = data.View(layout, self._body[:layout.size]), self._packet.body.draw
+        heights = {interlace.height for interlace in self.configuration.interlaces()}
+        height = (Const(heights.pop()) if len(heights) == 1
+                  else response_fields(ResponseKind.PICTURE, self._resolution).height)
+        m.d.comb += draw.eq(offered)
+        for row in ("top", "bottom"):
+            with m.If(offered[row] > height[:len(offered[row])]):
+                m.d.comb += draw[row].eq(height)
 
     def _end_commands(self, m):
         """The states after a command that is not done when it is taken."""

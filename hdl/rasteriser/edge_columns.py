@@ -32,7 +32,8 @@ class EdgeColumns(wiring.Component):
     The words have as many fraction bits as make the column exact on each row
     (``golden.reference.triangle_setup.carry_edges``), so a row may follow any other, and no edge
     has to be stepped.  Left of the screen becomes its first column, right of it the
-    column after its last, where that can be (``MachineConfiguration.edges_on_screen``).
+    column after its last, where the words have the bits for that.  So whatever the words are,
+    no extent leaves the screen.
 
     Latency: ``latency`` clocks.  Throughput: a row a clock.  All stages move together.
 
@@ -103,9 +104,11 @@ class EdgeColumns(wiring.Component):
         return column if self.configuration.edges_on_screen else column.as_signed()
 
     def _held(self, column):
-        if self.configuration.edges_on_screen:
-            return column
         widths = {interlace.width for interlace in self.configuration.interlaces()}
+        if self.configuration.edges_on_screen and 1 << len(column) <= min(widths):
+            return column
         width = Const(widths.pop()) if len(widths) == 1 else self.width
+        if self.configuration.edges_on_screen:
+            return Mux(column >= width, width, column)
         magnitude = column.as_unsigned()[:-1]
         return Mux(column < 0, 0, Mux(magnitude >= width, width, magnitude))

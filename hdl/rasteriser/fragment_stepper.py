@@ -31,6 +31,9 @@ def pixel_layout(configuration: MachineConfiguration) -> data.StructLayout:
 class FragmentStepper(wiring.Component):
     """Spans in, their pixels out, left to right.
 
+    Whatever the span, its pixels end: they go right by a stride, which is not 0, and whether the
+    next one is past the end is found before the sum is cut to the bits of a column.
+
     Latency: ``latency`` clocks (span register, pixel register).  Throughput: a pixel
     a clock; the next span follows without a bubble.
 

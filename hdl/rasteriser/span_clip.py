@@ -20,6 +20,12 @@ class SpanClip(wiring.Component):
     it crosses.  An extent without an owned pixel has none, and leaves no trace
     unless it is a triangle's last.
 
+    No extent goes on for ever: ``beyond`` is at most the picture's width (``EdgeColumns``), a
+    span goes on to another square only while the next one begins before it, that begins further
+    right, and there are bits for the first column of a square that an element owns past the width.
+    And every span is a whole number of strides of a column that is before its end, so its pixels
+    end, too (``FragmentStepper``).
+
     Latency: one clock.  Throughput: a span a clock; an extent without span costs one.
 
     Members

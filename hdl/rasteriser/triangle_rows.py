@@ -47,6 +47,13 @@ class TriangleRows(wiring.Component):
     only rows that it owns are visited.  What goes from block to block is built only
     where there may be several (``MachineConfiguration.aligned_domains``).
 
+    Whatever the triangle, its rows end.  ``bottom`` is at most the picture's height: the
+    controller and its set-up see to that.  A row follows only one above ``bottom``, and lies
+    below it by what an element skips at most, for which ``row_shape`` has the bits past the
+    height: so rows only grow, and one is past ``bottom`` at last.  A first row that is not
+    above ``bottom`` already, with ``top`` at most the height too, has none after it; and the
+    blocks of a domain have ever higher numbers up to its ``end``.
+
     Latency: two clocks.  Throughput: a row a clock, the next triangle without a
     bubble.  In a domain of several blocks each costs three clocks more, and one
     without rows a clock.
@@ -56,6 +63,7 @@ class TriangleRows(wiring.Component):
     total, first, end: In(id_bits)
         Number of units; this domain, ``end`` excluded.  Static while triangles come.
     triangles: In(stream of walked_outline_layout)
+        ``top`` and ``bottom`` are at most the picture's height; the rest may be anything.
     rows: Out(stream of row_layout)
     lattice: Out(lattice_layout)
         The lattice of the domain's first block, from the clock after ``end`` has settled.

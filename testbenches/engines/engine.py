@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,17 +19,27 @@ from .activity_record import ActivityRecord
 Progress = Callable[[int, int], None]
 
 
+class Reset(NamedTuple):
+    """The machine's reset is high in clock ``cycle``, the first one being 1.  The host drops what
+    it offers then, and goes on with the word ``command`` of the job's."""
+
+    cycle: int
+    command: int
+
+
 @dataclass(frozen=True)
 class Job:
     """Commands for one machine, from reset on.
 
-    ``commands``         command words, in order
-    ``responses``        how many responses the machine owes in all; the run ends when they are in
-                         and a whole scan has been seen since the last ``FRAME_SHOWN``
+    ``commands``         command words, in order; any words, valid or not
+    ``responses``        how many responses the machine owes in all, or since the last reset; the
+                         run ends when they are in and a whole scan has been seen since the last
+                         ``FRAME_SHOWN``
     ``memory_seed``      None leaves memories zero, a number fills them with random words first
     ``stall_seed``       None is never idle; a number makes the host pause at random on both streams
     ``waveform``         where to write a VCD, if anywhere
     ``maximum_cycles``   raise ``TimeoutError`` beyond: the machine hangs
+    ``resets``           clocks in which the machine is reset in mid-run, in ascending order
     """
 
     configuration: MachineConfiguration
@@ -39,6 +49,7 @@ class Job:
     stall_seed: int | None = None
     waveform: Path | None = None
     maximum_cycles: int | None = None
+    resets: Sequence[Reset] = ()
 
 
 @dataclass(frozen=True)
@@ -58,9 +69,10 @@ class EngineRun:
 
     ``seconds`` is the simulation, files included; ``build_seconds`` what it took to compile a
     model before, 0 where none had to be.  ``engine`` is who ran it, ``notes`` what the user should
-    know of it.  ``accepted``: int64, the cycle in which the machine took each command; None where
-    the engine does not tell.  ``activity``: what the processing elements did while they drew, for
-    a machine that is built to ``observe``, where the engine records it.
+    know of it.  ``accepted``: int64, the cycle in which the machine took each command, those that a
+    reset lost included; None where the engine does not tell.  ``activity``: what the processing
+    elements did while they drew, for a machine that is built to ``observe``, where the engine
+    records it.
     """
 
     responses: Sequence[tuple[ResponseKind, int, int]]

@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
-from amaranth.hdl import Cat, Const, Shape, Value
+from amaranth.hdl import Cat, ClockDomain, Const, Module, Shape, Value
 from amaranth.sim import Simulator
 
 from ...golden.specification.commands import ResponseKind
@@ -37,17 +37,22 @@ class _Run:
     def __init__(self, job: Job, progress: Progress | None, machine: Machine) -> None:
         self.job = job
         self.machine = machine
+        self.domain = ClockDomain("sync")
         self.progress = progress
         self.monitor = VideoMonitor(job.configuration)
         self.responses: list[tuple[ResponseKind, int, int]] = []
         self.accepted: list[int] = []
+        self.resets = list(reversed(job.resets))  # the next one is the last
+        # Since the last reset: the words sent, and how many responses had come before it.
+        self.sent = 0
+        self.outdated = 0
         self.shown_cycle: int | None = None
         self.cycle = 0
         self.watch = (ActivityWatch(job.configuration.processing_elements)
                       if job.configuration.observe else None)
 
     def simulate(self) -> EngineRun:
-        simulator = Simulator(self.machine)
+        simulator = Simulator(self._with_reset() if self.resets else self.machine)
         simulator.add_clock(1e-6)
         simulator.add_testbench(self._bench)
         began = time.perf_counter()
@@ -59,6 +64,13 @@ class _Run:
                          time.perf_counter() - began, engine=PysimEngine.name,
                          accepted=np.array(self.accepted, np.int64),
                          activity=self.watch.records if self.watch else ())
+
+    def _with_reset(self) -> Module:
+        """The machine in a clock domain whose reset is at hand."""
+        m = Module()
+        m.domains.sync = self.domain
+        m.submodules.machine = self.machine
+        return m
 
     def _scramble(self, ctx: Any) -> None:
         """Every memory word random, as after power-on."""
@@ -78,16 +90,19 @@ class _Run:
                                      self.machine.pins)
         send = Pace(self.job.stall_seed, salt=0)
         receive = Pace(self.job.stall_seed, salt=1)
-        words = iter(self.job.commands)
 
         def next_word() -> None:
-            word = next(words, None)
-            if word is None:
+            if self.sent == len(self.job.commands):
                 send.stop()
             else:
-                ctx.set(commands.payload, word)
+                ctx.set(commands.payload, self.job.commands[self.sent])
                 send.go()
 
+        def reset_if(at: int) -> None:
+            if self.resets:
+                ctx.set(self.domain.rst, self.resets[-1].cycle == at)
+
+        reset_if(1)
         next_word()
         receive.go()
         ctx.set(commands.valid, send.high)
@@ -102,10 +117,11 @@ class _Run:
             if self.watch is not None:
                 self.watch.clock(
                     self.cycle, activity,
-                    self.job.commands[len(self.accepted)] if taken and offered else None,
+                    self.job.commands[self.sent] if taken and offered else None,
                     response.kind if given and open_ else None)
             if taken and offered:
                 self.accepted.append(self.cycle)
+                self.sent += 1
                 next_word()
             else:
                 send.wait()
@@ -114,16 +130,29 @@ class _Run:
                 receive.go()
             else:
                 receive.wait()
-            if send.high != offered:  # setting a signal costs time, even to what it is
-                ctx.set(commands.valid, send.high)
-            if receive.high != open_:
-                ctx.set(responses.ready, receive.high)
             if is_pixel:
                 self.monitor.sample(self.cycle, active, in_sync, color)
                 if self._finished():
                     return
+            if self.resets:
+                if self.resets[-1].cycle == self.cycle:
+                    ctx.set(self.domain.rst, 0)
+                    self._forget()
+                    next_word()
+                reset_if(self.cycle + 1)
+            if send.high != offered:  # setting a signal costs time, even to what it is
+                ctx.set(commands.valid, send.high)
+            if receive.high != open_:
+                ctx.set(responses.ready, receive.high)
             if self.cycle % PROGRESS_CYCLES == 0:
                 self._report()
+
+    def _forget(self) -> None:
+        """This clock was a reset: what was sent and received before is of no account."""
+        self.sent = self.resets.pop().command
+        self.outdated = len(self.responses)
+        self.shown_cycle = None
+        self.monitor.restart()
 
     def _activity_lines(self) -> Value:
         return Value.cast(self.machine.activity) if self.watch else Const(0)
@@ -139,12 +168,17 @@ class _Run:
             self.progress(self.cycle, len(self.responses))
         if self.job.maximum_cycles is not None and self.cycle > self.job.maximum_cycles:
             raise TimeoutError(
-                f"no end after {self.cycle} cycles: {len(self.accepted)} of "
-                f"{len(self.job.commands)} commands taken, {len(self.responses)} of "
+                f"no end after {self.cycle} cycles: {self.sent} of "
+                f"{len(self.job.commands)} commands taken, {self._received} of "
                 f"{self.job.responses} responses")
 
+    @property
+    def _received(self) -> int:
+        return len(self.responses) - self.outdated
+
     def _finished(self) -> bool:
-        if len(self.accepted) < len(self.job.commands) or len(self.responses) < self.job.responses:
+        if (self.resets or self.sent < len(self.job.commands)
+                or self._received < self.job.responses):
             return False
         if self.shown_cycle is None:
             return True

@@ -75,7 +75,8 @@ class VerilatorEngine:
                 commands, results = Path(folder, "commands"), Path(folder, "results")
                 commands.write_bytes(_command_file(job))
                 arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
-                             _seed(job.stall_seed), job.maximum_cycles or 0]
+                             _seed(job.stall_seed), job.maximum_cycles or 0,
+                             *(number for reset in job.resets for number in reset)]
                 _watch([str(argument) for argument in arguments], progress)
                 recorded = results.read_bytes()
         run = _read(job, recorded)
@@ -191,7 +192,8 @@ def _read(job: Job, results: bytes) -> EngineRun:
         raise AssertionError(f"cycle {cycles}: {results[place + 10:].decode()}")
     if why != End.DONE:
         raise TimeoutError(f"no end after {cycles} cycles: {len(accepted)} of {len(job.commands)} "
-                           f"commands taken, {len(responses)} of {job.responses} responses")
+                           f"commands taken, {len(responses)} of {job.responses} responses"
+                           + f", {len(job.resets)} resets" * bool(job.resets))
     return EngineRun(responses, scans, cycles, 0.0, engine=VerilatorEngine.name,
                      accepted=accepted, activity=activity)
 

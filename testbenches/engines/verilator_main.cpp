@@ -1,8 +1,10 @@
 // Host and screen of a Cardcage machine, compiled with its Verilated model.
 //
 // usage: machine COMMANDS RESULTS expected-responses memory-seed stall-seed maximum-cycles
+//                [cycle command]...
 //
-// COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.
+// COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.  In each
+// cycle that is given the machine is reset, and the host goes on with the command beside it.
 // RESULTS gets records, each of which begins with its code: RESPONSE kind value cycle, SCAN cycle
 // and a picture, COMMANDS the number of commands taken and the cycle of each, END why, cycles and a
 // reason; of a machine that is observed also ACTIVITY first cycle, clocks, clocks a bucket, buckets,
@@ -84,6 +86,12 @@ class Monitor {
         line_pixels_ = 0;
         if (red | green | blue) return fail("colour during blanking");
         return true;
+    }
+    // The machine was reset: its scans begin anew.
+    void restart() {
+        pixels_.clear();
+        line_pixels_ = 0;
+        synchronised_ = in_sync_ = false;
     }
     bool shown_since(uint64_t cycle) const { return scans_ && last_scan_cycle_ > cycle; }
     const char* failure() const { return failure_; }
@@ -207,7 +215,7 @@ int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
 int main(int argc, char** argv) {
     VerilatedContext context;
     const bool is_bare = argc == 3 && !std::strcmp(argv[1], "bare");
-    if (!is_bare && argc != 7) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
+    if (!is_bare && (argc < 7 || argc % 2 == 0)) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
     const int64_t memory_seed = is_bare ? -1 : std::atoll(argv[4]);
     if (memory_seed >= 0) {
         context.randReset(2);
@@ -226,26 +234,35 @@ int main(int argc, char** argv) {
     const int64_t stall_seed = std::atoll(argv[5]);
     const uint64_t maximum = std::strtoull(argv[6], nullptr, 10);
 
+    struct Reset { uint64_t cycle, command; };
+    std::vector<Reset> resets;
+    for (int place = 7; place < argc; place += 2)
+        resets.push_back({std::strtoull(argv[place], nullptr, 10),
+                          std::strtoull(argv[place + 1], nullptr, 10)});
+    auto reset = resets.begin();
+
     Pace send(stall_seed, 0), receive(stall_seed, 1);
     Monitor monitor(results);
     const auto watch = std::make_unique<Watch>(results);
     std::vector<uint64_t> accepted;
     accepted.reserve(commands);
-    uint64_t received = 0, cycle = 0, shown_cycle = 0;
+    uint64_t sent = 0, received = 0, cycle = 0, shown_cycle = 0;  // the first two since a reset
     bool shown = false;
     char why = End::MAXIMUM;
     const char* reason = "";
 
     const auto next_command = [&] {
-        if (accepted.size() == commands) { send.stop(); return; }
-        std::memcpy(&machine.PORT(commands, payload), &words[accepted.size() * COMMAND_WORDS],
+        if (sent == commands) { send.stop(); return; }
+        std::memcpy(&machine.PORT(commands, payload), &words[sent * COMMAND_WORDS],
                     4 * COMMAND_WORDS);
         send.go();
     };
     next_command();
     receive.go();
     while (maximum == 0 || cycle <= maximum) {
+        const bool resetting = reset != resets.end() && reset->cycle == cycle + 1;
         machine.clk = 0;
+        machine.rst = resetting;
         machine.PORT(commands, valid) = send.high();
         machine.PORT(responses, ready) = receive.high();
         machine.eval();
@@ -254,7 +271,7 @@ int main(int argc, char** argv) {
         const bool given = receive.high() && machine.PORT(responses, valid);
         const uint64_t response = machine.PORT(responses, payload);
         ++cycle;
-        watch->clock(cycle, machine, taken ? words[accepted.size() * COMMAND_WORDS] & OPCODE_MASK : 0,
+        watch->clock(cycle, machine, taken ? words[sent * COMMAND_WORDS] & OPCODE_MASK : 0,
                      given ? response & KIND_MASK : 0);
         bool finished = false;
         if (machine.PORT(pins, pixel)) {
@@ -264,12 +281,12 @@ int main(int argc, char** argv) {
                 reason = monitor.failure();
                 break;
             }
-            finished = accepted.size() + taken == commands && received + given >= expected
-                       && (!shown || monitor.shown_since(shown_cycle));
+            finished = reset == resets.end() && sent + taken == commands
+                       && received + given >= expected && (!shown || monitor.shown_since(shown_cycle));
         }
         machine.clk = 1;
         machine.eval();
-        if (taken) { accepted.push_back(cycle); next_command(); } else send.wait();
+        if (taken) { accepted.push_back(cycle); ++sent; next_command(); } else send.wait();
         if (given) {
             const uint8_t kind = response & KIND_MASK;
             const uint32_t value = static_cast<uint32_t>(response >> RESPONSE_KIND_BITS);
@@ -281,6 +298,13 @@ int main(int argc, char** argv) {
             if (kind == ResponseKind::FRAME_SHOWN) { shown = true; shown_cycle = cycle; }
             receive.go();
         } else receive.wait();
+        if (resetting) {  // what was sent and received before is of no account
+            sent = (reset++)->command;
+            received = 0;
+            shown = false;
+            monitor.restart();
+            next_command();
+        }
         if (cycle % PROGRESS_CYCLES == 0) {
             std::printf("%llu %llu\n", static_cast<unsigned long long>(cycle),
                         static_cast<unsigned long long>(received));
@@ -288,10 +312,10 @@ int main(int argc, char** argv) {
         }
         if (finished) { why = End::DONE; break; }
     }
-    const uint64_t sent = accepted.size();
+    const uint64_t taken = accepted.size();
     std::fputc(RecordKind::COMMANDS, results);
-    std::fwrite(&sent, sizeof sent, 1, results);
-    std::fwrite(accepted.data(), sizeof sent, sent, results);
+    std::fwrite(&taken, sizeof taken, 1, results);
+    std::fwrite(accepted.data(), sizeof taken, taken, results);
     std::fputc(RecordKind::END, results);
     std::fputc(why, results);
     std::fwrite(&cycle, sizeof cycle, 1, results);

@@ -21,12 +21,10 @@ class VideoMonitor:
 
     def __init__(self, configuration: MachineConfiguration) -> None:
         self._timing = configuration.timing
-        self._pixels: list[int] = []
-        self._line_pixels = 0
-        self._synchronised = False
-        self._in_sync = False
+        self._pixels: list[int]
         self._first_cycle = 0
         self.scans: list[Scan] = []
+        self.restart()
 
     def sample(self, cycle: int, active: int, vertical_sync: int, color: int) -> None:
         """``color``: red in the low byte, then green, then blue."""
@@ -45,6 +43,12 @@ class VideoMonitor:
                 f"cycle {cycle}: a line of {self._line_pixels} pixels")
             self._line_pixels = 0
         assert color == 0, f"cycle {cycle}: colour {color:06x} during blanking"
+
+    def restart(self) -> None:
+        """The machine was reset: its scans begin anew, and what was seen of one is dropped."""
+        self._pixels = []
+        self._line_pixels = 0
+        self._synchronised = self._in_sync = False
 
     def _finish(self) -> None:
         timing = self._timing

@@ -1,0 +1,202 @@
+"""Command words that no host should send, and the jobs that hide good frames among them."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from cardcage.golden.cycles.frame_clocks import most_frame_clocks
+from cardcage.golden.organisations.organisation_of import organisation_of
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Layout, Opcode, ResponseKind
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.display_list import DisplayList
+from cardcage.testbenches.engines.engine import EngineRun, Job, Reset
+from cardcage.testbenches.frames.compare import compare
+from cardcage.testbenches.frames.conversation import Owed, owed_at_boot, owed_to
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.responses import Answers
+
+#: After every good frame.
+READINGS = (commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS))
+
+
+class StrayWords:
+    """Words from a seed: random ones, good ones with a bit flipped, fields at their ends, frames
+    that are cut short or put together wrongly."""
+
+    def __init__(self, configuration: MachineConfiguration, good: Sequence[int],
+                 source: random.Random) -> None:
+        self._configuration = configuration
+        self._good = good
+        self._source = source
+        self._kinds = (self._random, self._random_body, self._flipped, self._extreme,
+                       self._one_field, self._one_field, self._one_field, self._piece)
+
+    def words(self, count: int) -> list[int]:
+        """At least ``count`` of them, kind after kind."""
+        found: list[int] = []
+        while len(found) < count:
+            found += self._source.choice(self._kinds)()
+        return found
+
+    def _bits(self, count: int) -> int:
+        return self._source.getrandbits(count)
+
+    def _random(self) -> list[int]:
+        return [self._bits(commands.command_bits(self._configuration))]
+
+    def _random_body(self) -> list[int]:
+        """A drawing command mostly: those that are answered take long."""
+        opcode = self._source.choice([*Opcode, *[Opcode.PREPARED_TRIANGLE, Opcode.TRIANGLE] * 4])
+        body = self._bits(commands.command_bits(self._configuration) - commands.BODY_OFFSET)
+        return [commands.command(opcode, body)]
+
+    def _flipped(self) -> list[int]:
+        bits = commands.command_bits(self._configuration)
+        return [word ^ (1 << self._source.randrange(bits) if self._source.randrange(2) else 0)
+                for word in self._run()]
+
+    def _piece(self) -> list[int]:
+        """A piece of a frame, perhaps with a start, an end or a reading too many within."""
+        piece = self._run()
+        wrong = self._source.choice((Opcode.FRAME_START, Opcode.FRAME_END, Opcode.READ_DEPTH,
+                                     Opcode.READ_COUNTERS, None, None))
+        if wrong is not None:
+            piece.insert(self._source.randrange(len(piece) + 1), commands.command(wrong))
+        return piece
+
+    def _run(self) -> list[int]:
+        """Good words, one after another, from anywhere."""
+        begin = self._source.randrange(len(self._good))
+        return list(self._good[begin:begin + self._source.randrange(1, 6)])
+
+    def _extreme(self) -> list[int]:
+        """A triangle whose fields all are at the ends of their ranges, or of the picture."""
+        opcode = self._source.choice((Opcode.PREPARED_TRIANGLE, Opcode.TRIANGLE))
+        return [self._altered(commands.command(opcode), every=True)]
+
+    def _one_field(self) -> list[int]:
+        """Good words, but each with one field at such an end."""
+        return [self._altered(word, every=False) for word in self._run()]
+
+    def _altered(self, word: int, every: bool) -> int:
+        layout = {Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout,
+                  Opcode.TRIANGLE: commands.triangle_layout}.get(commands.opcode_of(word))
+        if layout is None:
+            return word
+        fields = list(_fields(layout(self._configuration), commands.BODY_OFFSET))
+        # Of a triangle set up by the host the first five are its rows and columns.
+        few = self._source.choice((fields, fields[:5]))
+        for offset, bits in fields if every else [self._source.choice(few)]:
+            mask = (1 << bits) - 1
+            word = word & ~(mask << offset) | (self._end(bits) & mask) << offset
+        return word
+
+    def _end(self, bits: int) -> int:
+        c = self._configuration
+        screen = [side + more for side in (c.width, c.height) for more in (-1, 0, 1)]
+        return self._source.choice((0, 1, -1, -2, 1 << bits - 1, (1 << bits - 1) - 1,
+                                    self._bits(bits), self._source.choice(screen)))
+
+
+def _fields(layout: Layout, offset: int) -> Iterator[tuple[int, int]]:
+    """First bit and bits of each number of a layout that begins at ``offset``."""
+    for entry in layout.values():
+        bits = entry if isinstance(entry, int) else commands.layout_bits(entry)
+        if isinstance(entry, int):
+            yield offset, bits
+        else:
+            yield from _fields(entry, offset)
+        offset += bits
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A job of stray words and good frames, and what it has to come to.
+
+    ``frames``   the display lists of the good frames, all of them after the last reset
+    ``cut``      what is owed from each boot until its reset, of which the rest never comes
+    ``owed``     what is owed after the last reset, and ``places`` where in it each frame begins
+    """
+
+    job: Job
+    frames: Sequence[DisplayList]
+    cut: Sequence[Sequence[Owed]]
+    owed: Sequence[Owed]
+    places: Sequence[int]
+
+
+def make_trial(configuration: MachineConfiguration, lists: Sequence[DisplayList], seed: int, *,
+               resets: int, rounds: int, stray: int) -> Trial:
+    """From boot to boot ``stray`` words or more and a reset at any clock, ``resets`` times; then
+    ``rounds`` times as many stray words and a good frame, each of ``lists`` in turn."""
+    source = random.Random(f"stray words {seed}")
+    organisation = organisation_of(configuration)
+    good = [frame_commands(configuration, one) for one in lists]
+    strays = StrayWords(configuration, good[0], source)
+    words: list[int] = []
+    cut, at = [], []
+    cycle = 0
+    for _ in range(resets):
+        lost = strays.words(stray)
+        words += lost
+        cut.append(list(_owed(configuration, lost)))
+        cycle += source.choice((source.randrange(1, 60), source.randrange(1, 4000)))
+        at.append(Reset(cycle, len(words)))
+    kept: list[int] = []
+    owed, places = owed_at_boot(organisation), []
+    for number in range(rounds):
+        lost = strays.words(stray)
+        frame = [*good[number % len(good)], *READINGS]
+        kept += lost + frame
+        owed += [answer for word in lost for answer in owed_to(organisation, word)]
+        places.append(len(owed))
+        owed += [answer for word in frame for answer in owed_to(organisation, word)]
+    opcodes = [commands.opcode_of(word) for word in kept]
+    job = Job(
+        configuration, commands=words + kept, responses=len(owed), memory_seed=seed,
+        stall_seed=source.choice((None, seed)), resets=at,
+        maximum_cycles=cycle + most_frame_clocks(configuration, len(kept))
+        + 2 * configuration.cycles_per_scan * opcodes.count(Opcode.FRAME_END)
+        + 30 * organisation.depths_read_back * opcodes.count(Opcode.READ_DEPTH))
+    return Trial(job, [lists[number % len(lists)] for number in range(rounds)], cut, owed, places)
+
+
+def _owed(configuration: MachineConfiguration, words: Sequence[int]) -> Iterator[Owed]:
+    organisation = organisation_of(configuration)
+    yield from owed_at_boot(organisation)
+    for word in words:
+        yield from owed_to(organisation, word)
+
+
+def check_trial(trial: Trial, run: EngineRun) -> None:
+    """Every word has its answers, in order, and every good frame is exact, on the video pins and
+    in the depths.  Raises ``AssertionError``."""
+    begin = 0
+    for reset, owed in zip(trial.job.resets, trial.cut, strict=True):
+        end = sum(cycle <= reset.cycle for *_, cycle in run.responses)
+        _check_answers(run.responses[begin:end], owed[:end - begin])
+        begin = end
+    responses = run.responses[begin:]
+    _check_answers(responses, trial.owed)
+    assert len(responses) == len(trial.owed), f"{len(responses)} answers, not {len(trial.owed)}"
+    configuration = trial.job.configuration
+    organisation = organisation_of(configuration)
+    boot = responses[:len(owed_at_boot(organisation))]
+    answers = sum(len(owed_to(organisation, word))
+                  for word in (commands.command(Opcode.FRAME_END), *READINGS))
+    for number, (display_list, place) in enumerate(zip(trial.frames, trial.places, strict=True)):
+        alone = replace(run, responses=[*boot, *responses[place:place + answers]])
+        comparison = compare(configuration, display_list,
+                             Answers(configuration, alone).frame(0, reading=0))
+        assert comparison.equal, f"frame {number}: {comparison.first_difference}"
+
+
+def _check_answers(responses: Sequence[tuple[ResponseKind, int, int]],
+                   owed: Sequence[Owed]) -> None:
+    """Those that came are those that are owed; ``owed`` may go on."""
+    for place, ((kind, value, cycle), answer) in enumerate(zip(responses, owed, strict=False)):
+        assert kind == answer.kind and answer.value in (None, value), (
+            f"answer {place}, cycle {cycle}: {kind.name} {value}, {answer} is due")
