@@ -9,19 +9,23 @@ import pytest
 from amaranth.hdl import Const
 from amaranth.lib import data
 from hdl_bench.bench import simulate
+from hdl_bench.cage import Run
 from hdl_bench.pictures import exact_words
 from hdl_bench.streams import Sink, Source
 
 from cardcage.golden.planning.presets import PRESETS
+from cardcage.golden.reference import exact, triangle_words
 from cardcage.golden.reference import triangle_setup as setup
-from cardcage.golden.reference import triangle_words
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
 from cardcage.golden.specification.interlace import Interlace
 from cardcage.hdl.backplane import words as layouts
+from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.machine import Machine
+from cardcage.testbenches.engines.engine import Job
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "command-words.md"
 TINY = MachineConfiguration(**PRESETS["tiny"])
@@ -291,3 +295,42 @@ def test_example_on_the_machine():
     assert depths == [drawn.get((x, y), (2**24 - 1,))[0] for y in range(16) for x in range(16)]
     assert (5, 5) in drawn  # the pixel that the page points at
     assert "pixel (5, 5) is\nword 5 · 16 + 5 = 85" in DOCUMENT.read_text(encoding="utf-8")
+
+
+def test_rows_that_are_out_of_range():
+    """What the page says goes on from the controller does."""
+    layout = commands.prepared_triangle_layout(TINY)
+    good = documented_commands()["PREPARED_TRIANGLE"] >> commands.BODY_OFFSET
+    rows = table("row or column")
+    assert {row["row or column"] for row in rows} == {"top", "middle", "bottom", "left", "right"}
+    sent = [commands.unpack(layout, good) | {row["row or column"]: int(row["sent"])}
+            for row in rows]
+    told = [values | {row["row or column"]: int(row["told to the processing elements"])}
+            for values, row in zip(sent, rows, strict=True)]
+    words = [commands.command(Opcode.PREPARED_TRIANGLE, commands.pack(layout, values))
+             for values in sent]
+    run = Run(TINY, words, 4, domains=[(0, 1)])
+    packets = map(run.fields, range(1, 1 + len(words)))  # after the survey
+    assert [(operation, commands.unpack(layout, body)) for operation, body in packets] == [
+        (Operation.DRAW, values) for values in told]
+
+
+def test_commands_that_are_out_of_order():
+    """The answers are those of the page, and the example after them is exact."""
+    known = documented_commands() | {"TRIANGLE": commands.command(Opcode.TRIANGLE)}
+    words, kinds = [], []
+    for row in table("sent", "answers"):
+        names = re.findall(r"[A-Z_]{4,}|\b\d+", row["sent"].split(",")[0])
+        words += [int(name) if name.isdigit() else known[name] for name in names]
+        for kind in re.findall(r"[A-Z_]{4,}", row["answers"]):
+            kinds += [ResponseKind[kind]] * (256 if kind == "DEPTH" else 1)
+    words += documented_commands().values()
+    kinds += [ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN, *[ResponseKind.DEPTH] * 256]
+    job = Job(TINY, words, 4 + len(kinds), memory_seed=1, maximum_cycles=40_000)
+    run = PysimEngine().run(job)
+    assert [kind for kind, *_ in run.responses][4:] == kinds
+    drawn, _ = exact_words(example(), TINY.interlace, flat=False)
+    depths = [value for _, value, _ in run.responses[-256:]]
+    assert depths == [drawn.get((x, y), (2**24 - 1,))[0] for y in range(16) for x in range(16)]
+    picture = exact.draw(example())
+    np.testing.assert_array_equal(run.scans[-1].picture, picture.color)
