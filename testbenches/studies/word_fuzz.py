@@ -28,7 +28,7 @@ MACHINES: dict[str, dict[str, object]] = {
     "4x(PM)": {"cards": "4x(PM)", "width": 8, "height": 8},
     "not square": {"cards": "PPMMMPM", "width": 6, "height": 5, "shading": "flat"},
     "coarser": {"cards": "PMM", "width": 9, "height": 7, "words": 10},
-    "squares": {"cards": "4x(PMM)", "width": 12, "height": 8, "block": 2},
+    "squares": {"cards": "2x(PMM)", "width": 9, "height": 8, "block": 2},
     "skew": {"cards": "2x(PMM)", "width": 8, "height": 8, "skew": True},
     "two ports": {"cards": "MMPMPM", "width": 8, "height": 8, "memory_ports": 2,
                   "allow_orphans": True},
@@ -36,7 +36,7 @@ MACHINES: dict[str, dict[str, object]] = {
                "setup_interval": 8},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
-    "larger": {"cards": "4x(PMM)", "width": 48, "height": 40},
+    "larger": {"cards": "PMMPMM", "width": 48, "height": 40},
     "larger set-up": {"cards": "PMMMPM", "width": 33, "height": 30, "setup": "hardware"},
 }
 

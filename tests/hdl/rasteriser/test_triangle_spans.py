@@ -15,6 +15,7 @@ from hdl_bench.pictures import (
 )
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
+from cardcage.golden.specification import commands
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
 
 
@@ -239,6 +240,67 @@ def test_spans_in_squares(machine, seed):
             clocks += range(clock, clock + spans)
             clock += max(1, spans)
     assert [clock for clock, _ in found] == clocks
+
+
+def any_outlines(configuration, first, end, source, count):
+    """Outlines of random bits, but with ``top`` and ``bottom`` held to the picture; those that the
+    queue before lets through."""
+    interlace = configuration.interlace
+    layout = commands.prepared_triangle_layout(configuration)
+    del layout["planes"]
+    (start, size), *others = blocks(first, end)
+    found = []
+    while len(found) < count:
+        outline = commands.unpack(layout, source.getrandbits(commands.layout_bits(layout)))
+        for row in ("top", "bottom"):
+            outline[row] = min(outline[row], interlace.height)
+        top, bottom = outline["top"], outline["bottom"]
+        # Of several blocks nothing is known early: these are the lattice of none.
+        rows = (source.choices(range(interlace.height), k=2) if others
+                else owned_rows(interlace, start, size, top, top + 64))
+        if others or rows[0] < bottom:
+            found.append(outline | {"first_row": rows[0], "second_row": rows[1],
+                                    "one_row": source.randrange(2) if others
+                                    else rows[1] >= bottom})
+    return found
+
+
+@pytest.mark.parametrize("on_screen", [False, True])
+@pytest.mark.parametrize("machine", [*MACHINES, *IN_SQUARES])
+def test_whatever_the_outline_its_spans_end_and_lie_in_the_picture(machine, on_screen):
+    """Also where columns have no sign, but bits for more than the picture has."""
+    if machine in MACHINES:
+        cards, (first, end), words, (width, height) = MACHINES[machine]
+        options = {"words": words}
+    else:
+        cards, block, (first, end), (width, height) = IN_SQUARES[machine]
+        options = {"block": block}
+    if on_screen:
+        options["edge_column_bits"] = width.bit_length()
+    configuration = small_machine(cards, width, height, **options)
+    assert configuration.edges_on_screen == on_screen
+    interlace = configuration.interlace
+    outlines = any_outlines(configuration, first, end, random.Random(f"outlines {machine}"), 60)
+    dut = TriangleSpans(configuration=configuration)
+    source = Source(dut.triangles, outlines, once(SETTLED, no_pause))
+    sink = Sink(dut.spans)
+
+    def lines(ctx, clock):
+        ctx.set(dut.total, configuration.units)
+        ctx.set(dut.first, first)
+        ctx.set(dut.end, end)
+        ctx.set(dut.width, interlace.width)
+
+    # A row or a span a clock, and three clocks more for a block.
+    most = len(outlines) * interlace.height * (width + 3 * (end - first))
+    simulate(dut, Drive(lines), source, Until(lambda: sum(item.last for item in sink.items),
+                                              len(outlines)), sink, after=3, limit=most)
+    assert sum(item.last for item in sink.items) == len(outlines)
+    spans = [span for span in sink.items if not span.none]
+    assert spans
+    for span in spans:
+        assert span.x < span.end <= interlace.width and span.y < interlace.height
+        assert all(first <= interlace.unit(x, span.y) < end for x in columns(span))
 
 
 def test_an_empty_domain_takes_a_clock_a_triangle_and_ends_each():
