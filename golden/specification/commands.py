@@ -105,7 +105,8 @@ def planes_layout(configuration: MachineConfiguration) -> Layout:
 
 
 def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
-    """The body of ``PREPARED_TRIANGLE``; also what is broadcast to the processing elements."""
+    """The body of ``PREPARED_TRIANGLE``; also what is broadcast to the processing elements, then
+    with ``top`` and ``bottom`` held to the picture's height."""
     rows, columns = configuration.y_bits, configuration.x_bits
     return {
         "top": rows, "middle": rows, "bottom": rows, "left": columns, "right": columns,

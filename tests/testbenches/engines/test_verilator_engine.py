@@ -22,12 +22,14 @@ from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines import choose_engine as engines
 from cardcage.testbenches.engines import verilator_engine
+from cardcage.testbenches.engines.engine import Reset
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
 from cardcage.testbenches.export import verilog
 from cardcage.testbenches.frames.compare import compare
 from cardcage.testbenches.frames.frame_job import frame_job
+from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.frames.simulation import simulate
 from cardcage.testbenches.support import cache as kept
 
@@ -76,6 +78,25 @@ def test_clock_for_clock_the_same_as_pysim(engine):
     assert [scan.cycle for scan in compiled.scans] == [scan.cycle for scan in interpreted.scans]
     for one, other in zip(compiled.scans[1:], interpreted.scans[1:], strict=True):
         np.testing.assert_array_equal(one.picture, other.picture)
+
+
+def test_resets_in_mid_run_are_the_same_in_both_engines(engine):
+    """While it boots, in the clock after, and while it draws; then the frame is exact."""
+    whole = frame_job(CONFIGURATION, LIST, memory_seed=4)
+    drawing = PysimEngine().run(whole).accepted[4]
+    resets = [Reset(37, 2), Reset(38, 0), Reset(38 + int(drawing), 0)]
+    job = replace(whole, resets=resets)
+    compiled, interpreted = engine.run(job), PysimEngine().run(job)
+    assert compiled.cycles == interpreted.cycles
+    assert compiled.responses == interpreted.responses
+    np.testing.assert_array_equal(compiled.accepted, interpreted.accepted)
+    assert [scan.cycle for scan in compiled.scans] == [scan.cycle for scan in interpreted.scans]
+    assert len(compiled.accepted) >= 4 + len(job.commands)  # some of them twice
+    last = [item for item in compiled.responses if item[2] > resets[-1].cycle]
+    assert len(last) == job.responses
+    for run in (compiled, interpreted):
+        frame = Answers(CONFIGURATION, replace(run, responses=last)).frame(0, reading=0)
+        assert compare(CONFIGURATION, LIST, frame).equal
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -10,12 +10,13 @@ from click.testing import CliRunner
 
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
-from testbenches.studies import golden_benchmark
+from testbenches.studies import golden_benchmark, word_fuzz
 
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark"])
+@pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark",
+                                  "word_fuzz"])
 def test_a_study_runs_from_a_clone(name):
     done = subprocess.run([sys.executable, "-m", f"testbenches.studies.{name}", "--help"],
                           cwd=ROOT, capture_output=True, text=True, timeout=100)
@@ -28,6 +29,23 @@ def test_golden_benchmark():
     assert done.exit_code == 0, done.output
     assert re.search(r"500 triangles, [\d,]+ fragments, 512x512", done.output)
     assert re.search(r"exact +best +[\d.]+ ms, median +[\d.]+ ms", done.output)
+
+
+def test_word_fuzz(monkeypatch):
+    def fuzz(seed):
+        return CliRunner().invoke(word_fuzz.main, ["--minutes", "0.0001", "--machine", "PM",
+                                                   "--seed", str(seed)])
+    done = fuzz(7)
+    assert done.exit_code == 0, done.output
+    assert re.search(r"seeds 7 to 7 on 1 machines: 1 trials, [\d,]+ words, [\d,]+ clocks; every "
+                     r"good frame exact; go on with --seed 8\n$", done.output)
+    monkeypatch.setattr(word_fuzz, "make_trial", lambda *_, **__: _no_end())
+    done = fuzz(9)
+    assert done.exit_code == 1 and done.stderr == "seed 9, machine PM: no end\n"
+
+
+def _no_end():
+    raise TimeoutError("no end")
 
 
 def test_the_engines_command():
