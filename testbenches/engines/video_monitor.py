@@ -21,10 +21,12 @@ class VideoMonitor:
 
     def __init__(self, configuration: MachineConfiguration) -> None:
         self._timing = configuration.timing
-        self._pixels: list[int]
+        self._pixels: list[int] = []
+        self._line_pixels = 0
+        self._synchronised = False
+        self._in_sync = False
         self._first_cycle = 0
         self.scans: list[Scan] = []
-        self.restart()
 
     def sample(self, cycle: int, active: int, vertical_sync: int, color: int) -> None:
         """``color``: red in the low byte, then green, then blue."""

@@ -82,11 +82,14 @@ class StrayWords:
         return [self._altered(word, every=False) for word in self._run()]
 
     def _altered(self, word: int, every: bool) -> int:
-        layout = {Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout,
-                  Opcode.TRIANGLE: commands.triangle_layout}.get(commands.opcode_of(word))
-        if layout is None:
+        opcode = commands.opcode_of(word)
+        if opcode == Opcode.PREPARED_TRIANGLE:
+            layout = commands.prepared_triangle_layout(self._configuration)
+        elif opcode == Opcode.TRIANGLE:
+            layout = commands.triangle_layout(self._configuration)
+        else:
             return word
-        fields = list(_fields(layout(self._configuration), commands.BODY_OFFSET))
+        fields = list(_fields(layout, commands.BODY_OFFSET))
         # Of a triangle set up by the host the first five are its rows and columns.
         few = self._source.choice((fields, fields[:5]))
         for offset, bits in fields if every else [self._source.choice(few)]:

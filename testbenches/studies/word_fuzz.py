@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import click
 
@@ -21,7 +22,7 @@ from cardcage.testbenches.engines.engine import Engine, EngineRun
 from .stray_words import check_trial, make_trial
 
 #: Machine → its fields; without width and height those that ``plan`` chooses for its scene.
-MACHINES: dict[str, dict[str, object]] = {
+MACHINES: dict[str, dict[str, Any]] = {
     "PM": {"cards": "PM", "width": 4, "height": 4},
     "PMPM": {"cards": "PMPM", "width": 8, "height": 8},
     "PMPMMM": {"cards": "PMPMMM", "width": 8, "height": 8, "fifo_depth": 2},
@@ -47,16 +48,16 @@ LARGER = ("larger", "larger set-up")
 @cache
 def machine(name: str) -> tuple[MachineConfiguration, tuple[DisplayList, ...]]:
     """A machine of ``MACHINES`` and the good frames it draws."""
-    fields = {"clocks_per_pixel": 2, **MACHINES[name]}
-    flat = fields.get("shading") == "flat"
+    fields: dict[str, Any] = {"clocks_per_pixel": 2, **MACHINES[name]}
     if "width" not in fields:
         only = make_display_list("tetra:depth=1", width=8, height=8).display_list
         planned = plan(only, **fields).configuration
         # A bit more than the scene needs: edges may leave the screen, but only to the right.
         return replace(planned, edge_column_bits=planned.x_bits), (only,)
-    size = {side: int(str(fields[side])) for side in ("width", "height")}
+    size = {side: fields[side] for side in ("width", "height")}
+    options: dict[str, Any] = {"shading": "flat"} if "shading" in fields else {}
     lists = tuple(make_display_list(f"random:n={n},size={side},seed={n}", **size,
-                                    **({"shading": "flat"} if flat else {})).display_list
+                                    **options).display_list
                   for n, side in ((6, 3), (3, 7)))
     return MachineConfiguration(**fields), lists
 
