@@ -253,9 +253,11 @@ class CentralBroadcastController(wiring.Component):
         layout = prepared_triangle_layout(self.configuration)
         offered, draw = data.View(layout, self._body[:layout.size]), self._packet.body.draw
         heights = {interlace.height for interlace in self.configuration.interlaces()}
+        m.d.comb += draw.eq(offered)
+        if min(heights) == (1 << self.configuration.y_bits) - 1:
+            return  # no number of a row's bits lies past the picture
         height = (Const(heights.pop()) if len(heights) == 1
                   else response_fields(ResponseKind.PICTURE, self._resolution).height)
-        m.d.comb += draw.eq(offered)
         for row in ("top", "bottom"):
             with m.If(offered[row] > height[:len(offered[row])]):
                 m.d.comb += draw[row].eq(height)

@@ -70,6 +70,7 @@ SMALLEST = [
      "shading": "flat"},
     {"cards": "PM", "width": 1, "height": 16, "memory_ports": 1, "shading": "flat"},
     {"cards": "PMM", "width": 16, "height": 1, "memory_ports": 1, "skew": True},
+    {"cards": "PM", "width": 8, "height": 7, "fraction_bits": 0},
     {"cards": "PMMMM", "width": 8, "height": 8, "words": 1, "shading": "flat", "fraction_bits": 0},
     {"cards": "PMPM", "width": 16, "height": 16, "block": 4, "setup": "hardware",
      "setup_interval": 256, "shading": "flat"},
