@@ -21,6 +21,7 @@ from ..specification.configuration import MachineConfiguration
 from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
 
 Float64 = NDArray[np.float64]
+Int64 = NDArray[np.int64]
 
 #: Three rows for a span, each by lane: its fragments, its visible fragments, and the clocks that
 #: its units need for both.
@@ -43,6 +44,11 @@ def _shown(configuration: MachineConfiguration) -> float:
     return timing.horizontal_active * timing.vertical_active / timing.pixels
 
 
+def lane_of(configuration: MachineConfiguration, unit: Int64) -> Int64:
+    """The lane that serves each memory unit."""
+    return unit & 1 if depth_lanes(configuration) == 2 else unit * 0
+
+
 def scan_share(configuration: MachineConfiguration) -> float:
     """The share of a unit's clocks in which the scan reads it; the mean over a scan."""
     # Every unit reads as often as the others.
@@ -60,7 +66,7 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     unit, group = organisation.scan_tile, organisation.scan_group
     rows, columns = unit.shape
     y, x = np.mgrid[:rows, :columns]
-    lane = unit & 1 if depth_lanes(configuration) == 2 else unit * 0
+    lane = lane_of(configuration, unit)
     # A unit reads for a group of pixels at once, at its beginning.
     clocks = configuration.clocks_per_pixel * group << organisation.resolution.x_shift
     read = np.zeros((rows, columns // group, elements + 1, 2))  # the last one has the orphans

@@ -16,9 +16,8 @@ from ..reference.coverage import Triangles
 from ..reference.exact import draw, fragments
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from ..specification.queues import depth_lanes
 from .element_spans import LatticeSpans
-from .one_port_lanes import scan_share
+from .one_port_lanes import lane_of, scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -72,7 +71,7 @@ class PortAccesses:
         visible = self._visible(y * organisation.resolution.width + x, drawn.depth)
         unit = organisation.unit(x, y)
         self._accesses += np.bincount(unit, 1 + visible, organisation.units)
-        lane = unit & 1 if depth_lanes(self._configuration) == 2 else unit * 0
+        lane = lane_of(self._configuration, unit)
         # Fragments come in the order of the whole spans and of the columns in each.
         whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
         counts = np.zeros((2, len(spans.source), 2), np.int64)
