@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -11,8 +12,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..engines.plain_paths import is_plain
 from ..engines.verilator_tool import ToolMissingError, find_verilator
+
+#: Paths that make can take: it breaks them at blanks, and gives other characters a meaning.
+_PLAIN = re.compile(r"[\w@+,./~-]+", re.ASCII)
 
 #: Variables that would make cocotb's runner believe it was called for something else.
 _FOREIGN_VARIABLES = ("PYTEST_CURRENT_TEST", "WAVES", "GUI", "COCOTB_TEST_FILTER",
@@ -45,18 +48,29 @@ class Simulator:
 
 def _verilator() -> Simulator:
     tool = find_verilator()
+    for program in ("make", "perl"):
+        if shutil.which(program) is None:
+            raise ToolMissingError(f"cocotb builds with Verilator by {program}, which is not on "
+                                   "PATH; install it, or take --simulator icarus")
     for place in (tool.root, Path(sys.prefix), Path(tempfile.gettempdir())):
-        if not is_plain(place):  # of cocotb's libraries, too, a makefile is told
+        if _PLAIN.fullmatch(str(place)) is None:
             raise ToolMissingError(f"cocotb cannot build with Verilator below {place}: make takes "
                                    "no blanks or letters beyond ASCII in a path; take another "
                                    "folder, or --simulator icarus")
+    path = str(tool.root / "bin") + os.pathsep + os.environ.get("PATH", "")
     return Simulator(
         name="verilator",
-        environment=tool.environment,
+        # The folder's ``bin`` first, so that no distribution's older Verilator is taken.
+        environment=os.environ | {"VERILATOR_ROOT": str(tool.root), "PATH": path},
         build_arguments=[
             # cocotb's runner calls make by itself and does not hand these flags on: let
             # Verilator do it before, and nothing is left to make.
-            "--build", "-j", "2", *tool.make_flags,
+            "--build", "-j", "2",
+            # The wheel's makefile names the compilers of the machine that built it, a ``python``
+            # that need not be on PATH, and gives the option for a precompiled header no value.
+            "-MAKEFLAGS", f"CXX={tool.compiler} LINK={tool.compiler} AR=ar "
+                          f"PYTHON3={sys.executable} "
+                          "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread",
             # Compiling takes longer than a small picture: no optimisation, and one source file,
             # because reading Verilator's headers takes longest.
             "-MAKEFLAGS", "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0",

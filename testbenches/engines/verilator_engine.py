@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import platform
-import shutil
 import struct
 import subprocess
 import tempfile
@@ -20,26 +19,13 @@ import numpy as np
 
 from ...golden.specification.commands import ResponseKind, command_words
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.machine import BOARDS
 from ..export.verilog import machine_verilog
 from ..support.cache import cached, content_hash, sources_hash
 from .activity_record import KINDS, ActivityRecord
+from .compiled_model import RECIPE, compile_model
 from .engine import EngineRun, Job, Progress, Scan
 from .model_constants import End, RecordKind, machine_constants
-from .plain_paths import plain_folder
 from .verilator_tool import ToolMissingError, VerilatorTool, find_verilator
-
-#: The model is optimised; what runs once or seldom need not be.
-FLAGS = ["--cc", "--exe", "--build", "-j", "2", "--top-module", "machine", "-O3",
-         "--x-assign", "fast", "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
-         "--output-split", "20000", "-CFLAGS", "-std=c++17 -O2"]
-
-
-#: Each kind of card is compiled once however many slots hold one: half the time to build, and a
-#: program so much smaller that it runs twice as fast.
-ONCE = "`verilator_config\n" + "".join(
-    f'no_inline -module "{name}"\n' for name in BOARDS)
-
 
 #: A response in the results; a depth buffer has hundreds of thousands.
 _RESPONSE = np.dtype([("tag", "S1"), ("kind", "u1"), ("value", "<u4"), ("cycle", "<u8")])
@@ -88,22 +74,15 @@ class VerilatorEngine:
         """The program for a configuration, and whether it had to be built."""
         main = (resources.files(__package__) / "verilator_main.cpp").read_text("utf-8")
         constants = machine_constants(configuration)
-        key = content_hash([self.verilog or origin(configuration), main, constants, ONCE, *FLAGS,
+        key = content_hash([self.verilog or origin(configuration), main, constants, *RECIPE,
                             self.tool.version(), self.tool.compiler, platform.machine()])
 
         def build(kept: Path) -> None:
             if progress is not None:
                 progress(0, 0)
-            verilog = self.verilog or machine_verilog(configuration)
-            with plain_folder(kept) as folder, self.tool.plain() as tool:
-                for name, text in (("machine.v", verilog), ("main.cpp", main),
-                                   ("machine_constants.h", constants), ("once.vlt", ONCE)):
-                    (folder / name).write_text(text, encoding="utf-8")
-                tool.run([*FLAGS, *tool.make_flags, "-CFLAGS", "-I..",
-                          "--Mdir", "model", "-o", "../machine",
-                          "once.vlt", "machine.v", "main.cpp"], folder)
-                # Objects and headers: a hundred times the program.
-                shutil.rmtree(folder / "model")
+            compile_model(self.tool, {
+                "machine.v": self.verilog or machine_verilog(configuration),
+                "main.cpp": main, "machine_constants.h": constants}, kept)
 
         folder, fresh = cached(key, build)
         return folder / "machine", fresh

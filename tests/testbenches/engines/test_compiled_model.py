@@ -1,0 +1,81 @@
+"""What is translated and compiled for a machine, and what is not done twice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.testbenches.engines import compiled_model
+from cardcage.testbenches.engines.compiled_model import compile_model
+from cardcage.testbenches.engines.verilator_tool import (
+    ToolMissingError,
+    VerilatorTool,
+    find_verilator,
+)
+from cardcage.testbenches.export.verilog import machine_verilog
+from cardcage.testbenches.support import cache
+
+try:
+    find_verilator()
+except ToolMissingError as missing:
+    pytest.skip(f"simulator verilator: {missing}", allow_module_level=True)
+
+
+@dataclass(frozen=True)
+class Recorder(VerilatorTool):
+    """Translates in truth, and only notes what would be compiled.
+
+    ``compiled``    the arguments of every compiler
+    ``translated``  bytes of the source text that runs in every clock, for each machine
+    """
+
+    compiled: list = field(default_factory=list)
+    translated: list = field(default_factory=list)
+
+    def translate(self, arguments, folder):
+        super().translate(arguments, folder)
+        self.translated.append(sum(path.stat().st_size for path in folder.glob("*.cpp")
+                                   if not path.stem.endswith("Slow")))
+
+    def compile(self, units, folder):
+        self.compiled.extend(units)
+        for unit in units:
+            for part in unit:
+                if part.endswith(".cc"):  # all that a unit names is there
+                    for line in (folder / part).read_text().splitlines():
+                        assert (folder / line.split('"')[1]).exists()
+
+
+@pytest.fixture
+def tool(tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
+    found = find_verilator()
+    return Recorder(found.root, found.compiler)
+
+
+def build(tool, folder, cards):
+    configuration = MachineConfiguration(cards=cards, width=32, height=32, clocks_per_pixel=2)
+    folder.mkdir()
+    compile_model(tool, {"machine.v": machine_verilog(configuration)}, folder)
+    assert not list(folder.iterdir())  # the program is all that stays
+
+
+def test_pieces_that_elements_have_in_common_are_written_once(tool, tmp_path, monkeypatch):
+    build(tool, tmp_path / "cut", "8x(PM)")
+    place = compiled_model.TRANSLATE.index("--output-split-cfuncs")
+    monkeypatch.setattr(compiled_model, "TRANSLATE", compiled_model.TRANSLATE[:place])
+    build(tool, tmp_path / "whole", "8x(PM)")
+    cut, whole = tool.translated
+    assert cut < 0.93 * whole  # more in larger machines
+
+
+def test_the_runtime_is_compiled_once(tool, tmp_path):
+    for number in range(2):
+        build(tool, tmp_path / str(number), "PM")
+    runtime = [unit for unit in tool.compiled if any("verilated.cpp" in part for part in unit)]
+    assert len(runtime) == 1
+    links = [unit for unit in tool.compiled if "../machine" in unit]
+    assert len(links) == 2
+    assert links[0] == links[1]
