@@ -5,15 +5,16 @@ import random
 from itertools import cycle
 
 import pytest
-from hdl_bench.bench import rejects
+from hdl_bench.bench import Watch, rejects, simulate
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
     on_few_pixels,
     sees_a_clear_in_between,
 )
+from hdl_bench.memory import MemoryBusModel
 from hdl_bench.pictures import small_machine
-from hdl_bench.streams import pauses
+from hdl_bench.streams import Source, pauses
 
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.depth_test.one_port import OnePortDepthTest
@@ -137,6 +138,40 @@ def test_units_of_one_lane_take_a_visible_fragment_a_clock():
     fragments = [fragment(2 * (index % 2), index // 2, 5, index) for index in range(2 * WORDS)]
     run = Run(fragments, units=4, background=255)
     assert run.clocks == 2 * WORDS + run.dut.waiting + run.dut.latency
+
+
+@pytest.mark.parametrize("parity", [0, 1])
+@pytest.mark.parametrize("place", range(10, 14))
+def test_both_lanes_have_their_turn(parity, place):
+    """One fragment among many winners of the other lane, that take a clock each on two units, is
+    written as if it were alone, or a clock later."""
+    fragments = [fragment(2 * (index % 2) + parity, index // 2, 5, index) for index in range(60)]
+    fragments.insert(place, fragment(1 - parity, 3, 5, 99))
+    run = Run(fragments, units=4, background=255)
+    taken = run.source.taken[place]
+    written, = (clock for clock, unit, _ in run.memory.writes if unit == 1 - parity)
+    assert written - taken <= run.dut.waiting + run.dut.latency + 1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_lane_keeps_still_while_the_scan_has_a_port_of_its_units(seed):
+    """So the bus is never kept from the other lane by a request that has to wait."""
+    dut = COMPONENTS["one_port_depth_test"](CONFIGURATION)
+    source = Source(dut.fragments, on_few_pixels(f"still {seed}", 250, units=4, words=WORDS))
+    memory = MemoryBusModel(dut.memory, first=0, end=4, words=WORDS, depth_bits=dut.depth_bits,
+                            seed=seed, scan=0.4)
+    moved = 0
+
+    def look(ctx, clock):
+        nonlocal moved
+        scanned = ctx.get(dut.memory.scanned)
+        for request in (ctx.get(dut.memory.read), ctx.get(dut.memory.write)):
+            if request.valid:
+                assert not scanned >> request.unit % 2 & 1
+                moved += scanned != 0
+
+    simulate(dut, source, memory, Watch(look), after=100)
+    assert moved > 50, "the other lane goes on"
 
 
 def test_a_clear_in_between_is_seen():
