@@ -5,8 +5,7 @@ from __future__ import annotations
 from .card_order import domains
 from .configuration import MachineConfiguration
 
-#: Spans that are found ahead, so that rows of few pixels hide behind longer ones.  With any other
-#: number, from a few on, a machine draws the same pictures, sooner or later.
+#: Spans that are found ahead, so that rows of few pixels hide behind longer ones.
 SPANS_WAITING = 16
 
 #: Fragments that can wait before each lane, so that short runs in one unit even out, and rows

@@ -304,6 +304,7 @@ def test_rows_without_pixels_hide_behind_the_spans_that_wait(empty):
     assert len(reads) == 64 + 40 + 1
     assert reads[:-1] == list(range(reads[0], reads[0] + 64 + 40))
     hidden = SPANS_WAITING - PIPELINE.lead
+    assert hidden == 11
     assert reads[-1] - reads[-2] == max(1, empty - hidden)
 
 
