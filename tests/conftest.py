@@ -21,7 +21,7 @@ set_hypothesis_home_dir(TESTS.parent / ".hypothesis")
 QUICK = ("golden", "hdl", "test_house.py")
 #: But for whole machines, whole lists through the set-up, and what tries every triangle there is.
 NOT_QUICK = ("golden/precision/test_error_bound.py", "golden/cycles/test_frame_clocks.py",
-             "hdl/test_machine.py", "hdl/test_cycle_constants.py",
+             "hdl/test_machine.py", "hdl/test_shared_wires.py", "hdl/test_cycle_constants.py",
              "hdl/backplane/test_command_words_document.py",
              "hdl/triangle_setup/test_triangle_setup.py")
 

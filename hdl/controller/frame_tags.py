@@ -87,6 +87,7 @@ class FrameTags(wiring.Component):
             m.d.comb += stale[tag].eq(
                 ~free[tag] & (self.color[0] != tag) & (self.color[1] != tag))
         m.d.comb += self.ready.eq(free.any())
+        # No tag is taken and swept in one clock: one is free, the other was stale and still is.
         m.d.sync += free.eq((free & ~taken) | swept)
 
         with m.If(self.start):

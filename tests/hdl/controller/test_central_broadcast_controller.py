@@ -57,10 +57,10 @@ def test_boot(name, seed):
     assert not run.scans.swaps
 
 
-@pytest.mark.parametrize("total", [0, 3, 5, 7])
+@pytest.mark.parametrize("total", [0, 3, 5, 7, 300])
 @pytest.mark.parametrize("seed", [None, 1])
 def test_an_unsupported_number_of_units_is_refused_and_does_not_hang(total, seed):
-    configuration = small_machine("PM", maximum_units=7)
+    configuration = small_machine("PM", maximum_units=max(7, total))
     words = [commands.frame_start((1, 2, 3)), commands.command(Opcode.FRAME_END),
              commands.command(Opcode.READ_DEPTH), commands.command(Opcode.PREPARED_TRIANGLE)]
     fault = (ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)
@@ -218,19 +218,53 @@ def test_an_empty_frame_takes_as_long_whatever_the_memory_holds():
     assert max(took[1]) <= 6
 
 
+@pytest.mark.parametrize("first", [Opcode.READ_DEPTH, Opcode.READ_COUNTERS])
 @pytest.mark.parametrize("seed", range(3))
-def test_read_back_waits_for_done(seed):
+def test_read_back_waits_for_done(seed, first):
+    """Behind triangles, and behind another read-back."""
+    answers = {Opcode.READ_DEPTH: [(ResponseKind.DEPTH, depth) for depth in DEPTHS],
+               Opcode.READ_COUNTERS: COUNTS}
+    other, = set(answers) - {first}
     configuration = small_machine("PM")
     words = [commands.frame_start((0, 0, 0)), *triangles(configuration, seed, 5),
-             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS),
-             commands.command(Opcode.READ_DEPTH)]
-    run = Run(configuration, words, 4 + 2 * len(DEPTHS) + 2, seed=seed, work=25)
+             *map(commands.command, (first, other, first))]
+    expected = answers[first] + answers[other] + answers[first]
+    run = Run(configuration, words, 4 + len(expected), seed=seed, work=25)
     for clock, operation, _ in run.cage.packets:
         if operation in (Operation.READ_DEPTH, Operation.READ_COUNTERS):
             assert run.cage.idle[clock]
-    kinds = [kind for kind, _ in run.responses[4:]]
-    assert kinds == [*[ResponseKind.DEPTH] * 3, *(kind for kind, _ in COUNTS),
-                     *[ResponseKind.DEPTH] * 3]
+    assert run.responses[4:] == expected
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_comes_along_the_chain_while_the_controller_speaks_waits(seed):
+    """Cards that are done say nothing; the words of one that does are not lost."""
+    class Unasked(Cage):
+        """Has something to say without having been asked."""
+
+        said = 0
+
+        def drive(self, ctx):
+            if not self.answers and self.said < 40 and self.pick.random() < 0.5:
+                self.answers.append((ResponseKind.DEPTH, 100 + self.said))
+                self.said += 1
+            super().drive(ctx)
+
+        finished = True  # done, whatever it says
+
+    configuration = small_machine("PM")
+    words = [7, commands.frame_start((0, 0, 0)), commands.command(Opcode.FRAME_END), 7]
+    dut = CentralBroadcastController(configuration=configuration)
+    cage = Unasked(dut, domains=[], seed=seed)
+    fault = (ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)
+    own = [ResponseKind.UNITS, ResponseKind.PICTURE, ResponseKind.BOOTED, fault[0],
+           ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN, fault[0]]
+    sink = Sink(dut.responses, 40 + len(own))
+    simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, 1)), Source(dut.commands, words),
+             sink, cage, Units(dut, 20), Scans(dut, 50), after=10)
+    passed = [item.value for item in sink.items if item.kind == ResponseKind.DEPTH]
+    assert passed == list(range(100, 140))
+    assert [item.kind for item in sink.items if item.kind != ResponseKind.DEPTH] == own
 
 
 @pytest.mark.parametrize("delay", range(10))

@@ -5,15 +5,16 @@ import random
 from itertools import cycle
 
 import pytest
-from hdl_bench.bench import rejects
+from hdl_bench.bench import Drive, Watch, rejects, simulate
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
     on_few_pixels,
     sees_a_clear_in_between,
 )
+from hdl_bench.memory import MemoryBusModel
 from hdl_bench.pictures import small_machine
-from hdl_bench.streams import pauses
+from hdl_bench.streams import Source, pauses
 
 from cardcage.hdl.components import COMPONENTS
 from cardcage.hdl.depth_test.one_port import OnePortDepthTest
@@ -137,6 +138,56 @@ def test_units_of_one_lane_take_a_visible_fragment_a_clock():
     fragments = [fragment(2 * (index % 2), index // 2, 5, index) for index in range(2 * WORDS)]
     run = Run(fragments, units=4, background=255)
     assert run.clocks == 2 * WORDS + run.dut.waiting + run.dut.latency
+
+
+@pytest.mark.parametrize("parity", [0, 1])
+def test_both_lanes_have_their_turn(parity):
+    """One winner among many of the other lane, of which one is written every clock: once its port
+    is free it is the next one."""
+    dut = COMPONENTS["one_port_depth_test"](CONFIGURATION)
+    fragments = [fragment(2 * (index % 2) + parity, index // 2, 5, index) for index in range(60)]
+    fragments.insert(20, fragment(1 - parity, 3, 5, 99))
+    source = Source(dut.fragments, fragments)
+    read, written = [], {0: [], 1: []}
+
+    def ports(ctx, clock):
+        ctx.set(dut.memory.read_data, 255)
+        scanned = read and clock < read[0] + dut.latency + 5
+        ctx.set(dut.memory.scanned, 1 << 1 - parity if scanned else 0)
+
+    def look(ctx, clock):
+        reads, write = ctx.get(dut.memory.read), ctx.get(dut.memory.write)
+        if reads.valid and reads.unit == 1 - parity:
+            read.append(clock)
+        if write.valid:
+            written[write.unit % 2].append(clock)
+
+    simulate(dut, Drive(ports), source, Watch(look), after=60)
+    assert len(read) == 1 and len(written[parity]) == 60
+    free = read[0] + dut.latency + 5
+    assert written[1 - parity] == [free]
+    assert {free - 1, free + 1} <= set(written[parity])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_lane_keeps_still_while_the_scan_has_a_port_of_its_units(seed):
+    """So the bus is never kept from the other lane by a request that has to wait."""
+    dut = COMPONENTS["one_port_depth_test"](CONFIGURATION)
+    source = Source(dut.fragments, on_few_pixels(f"still {seed}", 250, units=4, words=WORDS))
+    memory = MemoryBusModel(dut.memory, first=0, end=4, words=WORDS, depth_bits=dut.depth_bits,
+                            seed=seed, scan=0.4)
+    moved = 0
+
+    def look(ctx, clock):
+        nonlocal moved
+        scanned = ctx.get(dut.memory.scanned)
+        for request in (ctx.get(dut.memory.read), ctx.get(dut.memory.write)):
+            if request.valid:
+                assert not scanned >> request.unit % 2 & 1
+                moved += scanned != 0
+
+    simulate(dut, source, memory, Watch(look), after=100)
+    assert moved > 50, "the other lane goes on"
 
 
 def test_a_clear_in_between_is_seen():

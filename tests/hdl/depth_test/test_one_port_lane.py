@@ -1,7 +1,7 @@
 """Read, compare, write: against a dictionary, fragment by fragment."""
 
 import pytest
-from hdl_bench.bench import rejects
+from hdl_bench.bench import Drive, Watch, rejects, simulate
 from hdl_bench.depth_tests import (
     DepthTestRun,
     fragment,
@@ -11,7 +11,7 @@ from hdl_bench.depth_tests import (
     on_one_pixel_in_consecutive_clocks,
     sees_a_clear_in_between,
 )
-from hdl_bench.streams import pauses
+from hdl_bench.streams import Source, pauses
 
 from cardcage.hdl.depth_test.one_port_lane import OnePortLane
 
@@ -73,6 +73,28 @@ def test_latency():
     source, memory = run.source, run.memory
     assert source.taken == [0]
     assert memory.writes[0][0] == source.taken[0] + OnePortLane.latency == 3
+
+
+def test_while_a_winner_waits_two_more_fragments_are_read():
+    """Each as soon as it comes: no stage that is empty waits for the one after it."""
+    lane = OnePortLane(**BITS)
+    gap, free = 6, 50
+    source = Source(lane.fragments, [fragment(0, index, 5, index) for index in range(4)],
+                    lambda: gap)
+    written = []
+
+    def port(ctx, clock):
+        ctx.set(lane.memory.write_busy, clock < free)
+        ctx.set(lane.memory.read_data, 255)
+
+    def watch(ctx, clock):
+        if ctx.get(lane.memory.write).valid and clock >= free:
+            written.append(ctx.get(lane.memory.write).address)
+
+    simulate(lane, Drive(port), source, Watch(watch), after=10)
+    first = gap
+    assert source.taken == [first, first + gap + 1, first + 2 * (gap + 1), free]
+    assert written == [0, 1, 2, 3]
 
 
 def test_two_units_in_turn_take_a_visible_fragment_a_clock():

@@ -281,6 +281,76 @@ def test_the_port_is_never_idle_while_something_asks():
     assert min(card.counts[kind] for kind in ("scan", "write", "read")) > 50
 
 
+class Interference(Agent):
+    """All words are written with a tag that then is stale; while a pass takes it out, the first
+    read of each word is followed by a write: to the word whose number differs in the bits of
+    ``PLAN``, and while the scan asks, too, or not.
+
+    ``reads``: the words that the pass reads.  ``expected``: what it has to read.
+    """
+
+    PLAN = ((0, False), (1, False), (2, False), (4, False), (8, False), (16, False), (32, False),
+            (0, True), (48, False), (16, True), (24, False))
+
+    def __init__(self, dut):
+        self.dut = dut
+        self.words = dut.configuration.words
+        self.clock = 0
+        self.finished = False
+        self.write = None
+        self.reads, self.expected, self.tried, self.current = [], [], set(), set()
+
+    def drive(self, ctx):
+        dut, access = self.dut, self.dut.memory.access
+        began = 2 * self.words + 20
+        fetch, write = False, self.write
+        self.write = None
+        if self.clock <= began:
+            place = self.clock - self.words - 10
+            write = place if 0 <= place < self.words else None
+            ctx.set(dut.total, 1)
+            ctx.set(dut.pictures.initialise, self.clock == 0)
+            ctx.set(dut.pictures.sweep, self.clock == began)
+            for tag in (dut.pictures.depth_tag, *dut.pictures.color_tag):
+                ctx.set(tag, 2 if self.clock == began else 1)
+        else:
+            ctx.set(dut.pictures.sweep, 0)
+            self.finished = bool(ctx.get(dut.pictures.swept))
+            if ctx.get(access.sweep):
+                fetch = self.visit(ctx.get(access.sweep_address))
+        ctx.set(dut.left.lines.write, {"valid": write is not None, "address": write or 0})
+        ctx.set(dut.scan.fetch, {"valid": fetch})
+        self.clock += 1
+
+    def visit(self, address):
+        """A word is read; returns whether the scan asks in the next clock."""
+        self.reads.append(address)
+        if address in self.reads[:-1]:
+            return False
+        different, scan = self.PLAN[address % len(self.PLAN)]
+        self.write = address ^ different
+        takes_place = not scan or self.dut.configuration.memory_ports == 2
+        self.expected.append(address)
+        if address not in self.current:
+            self.tried.add((different, scan))
+            if takes_place and different % 16 == 0:
+                self.expected.append(address)
+        if takes_place:
+            self.current.add(self.write)
+        return scan
+
+
+@pytest.mark.parametrize("ports", [1, 2])
+def test_a_pass_reads_again_what_may_have_been_written(ports):
+    """The word itself or, as it looks at four bits only, one in sixteen; a write that waits for
+    the scan has not changed anything."""
+    dut = MemoryUnit(configuration=small_machine("PM", 8, 8, memory_ports=ports))
+    life = Interference(dut)
+    simulate(dut, life)
+    assert life.words == 64 and life.tried == set(life.PLAN)
+    assert life.reads == life.expected
+
+
 def test_responses_pass_through_at_once():
     dut = MemoryUnit(configuration=CONFIGURATION)
     words = [{"kind": number % 10, "value": number * 77} for number in range(30)]

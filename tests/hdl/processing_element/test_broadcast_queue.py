@@ -65,18 +65,21 @@ def run(kind, seed, *, whole=1, pause=(no_pause,) * 4, depth=16, others=0.2):
     display_list = random_triangles(f"{kind} {seed}", 60, width=16, height=16)
     triangles = prepared_values(configuration, prepare(configuration, display_list))
     packets, kept, operations = [], [], []
+    waiting = []  # of each packet: it has to be taken
     source = random.Random(f"frame starts {seed}")
     for triangle in triangles:
         if source.random() < others:
             operation = source.choice([Operation.FRAME_START, Operation.READ_DEPTH])
             packets.append({"operation": operation})
+            waiting.append(True)
             operations.append((operation, len(kept)))
         packets.append({"operation": Operation.DRAW, "body": {"draw": triangle}})
         rows = [y for y in range(triangle["top"], 16 + 2 * (y_mask + 1))
                 if (y - y_offset) & y_mask == 0]
         columns = any((x - x_offset) & (x_mask >> skew) == 0
                       for x in range(triangle["left"], triangle["right"]))
-        if not whole or (columns and rows[0] < triangle["bottom"]):
+        waiting.append(not whole or (columns and rows[0] < triangle["bottom"]))
+        if waiting[-1]:
             kept.append((triangle, rows))
     dut = BroadcastQueue(configuration=configuration)
     announcer = Announcer(dut, packets, pause[0])
@@ -96,6 +99,8 @@ def run(kind, seed, *, whole=1, pause=(no_pause,) * 4, depth=16, others=0.2):
             before.append(taken)
         if ctx.get(dut.empty):
             assert not ctx.get(dut.triangles.valid) and not ctx.get(dut.planes.valid)
+            announced = sum(strobe < clock for strobe in announcer.strobes)
+            assert sum(waiting[:announced]) == len(planes_sink.items) + len(operations_sink.items)
 
     # The watch looks before the sinks take.
     simulate(dut, Drive(lines), Watch(watch), announcer, triangles_sink, planes_sink,

@@ -15,8 +15,10 @@ from hdl_bench.pictures import (
 )
 from hdl_bench.streams import Sink, Source, pauses
 
+from cardcage.golden.cycles.element_latencies import PIPELINE
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.commands import ResponseKind
+from cardcage.golden.specification.queues import SPANS_WAITING
 from cardcage.hdl.backplane.connectors import BroadcastLines
 from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
@@ -89,8 +91,9 @@ class Bench:
                  pause=lambda: 0, right=()):
         self.dut = dut = ProcessingElement(configuration=configuration)
         self.memory = MemoryBusModel(dut.right.lines, first=first, end=end,
-                                  words=configuration.words, seed=seed, scan=scan,
-                                  depth_bits=configuration.depth_bits)
+                                     words=configuration.words, seed=seed, scan=scan,
+                                     depth_bits=configuration.depth_bits,
+                                     ports=configuration.memory_ports)
         self.announcer = Announcer(dut, self.memory, packets, pause)
         self.sink = Sink(dut.left.response, responses + len(right), pause)
         self.source = Source(dut.right.response, right, pause)
@@ -206,6 +209,23 @@ def test_operations_wait_for_those_before(seed):
         assert number is None or value == number
 
 
+@pytest.mark.parametrize("ports", [1, 2])
+def test_busy_are_the_clocks_from_leaving_the_queue_to_the_last_write(ports):
+    """Of each frame for itself; a triangle of one pixel is in one place of the pipeline at a
+    time."""
+    configuration = small_machine("PM", memory_ports=ports)
+    packets = [SURVEY, None]
+    for size in (1, 3, 1):
+        packets += [FRAME_START, draw(rectangle(configuration, 2, 3, 2 + size, 3 + size)), None,
+                    READ_COUNTERS, None]
+    bench = Bench(configuration, 0, 1, packets, responses=1 + 2 * 3)
+    for frame, strobe in enumerate(bench.announcer.strobes[2::3]):
+        ended = bench.announcer.dones[1 + 2 * frame]
+        written = max(write[0] for write in bench.memory.writes if write[0] < ended)
+        assert bench.responses[2 + 2 * frame] == (
+            ResponseKind.BUSY, written + 1 - (strobe + BroadcastQueue.latency))
+
+
 def test_an_empty_domain_reports_none_and_is_done():
     configuration = small_machine("PPM")
     scene = random_triangles(3, 10, width=8, height=8, flat=True)
@@ -267,6 +287,25 @@ def test_throughput_is_a_fragment_a_clock_in_long_rows():
     reads = [read[0] for read in bench.memory.reads[2 + 128:]]
     assert len(reads) == 4 * 128
     assert reads == list(range(reads[0], reads[0] + 4 * 128))
+
+
+@pytest.mark.parametrize("empty", [5, 12, 13, 40])
+def test_rows_without_pixels_hide_behind_the_spans_that_wait(empty):
+    """A long row lets spans of a pixel each wait; so many rows without one behind them cost no
+    clock, and each further one does."""
+    configuration = small_machine("PM", 64, 64, memory_ports=2)
+    behind = rectangle(configuration, 0, 0, 1, empty + 1)
+    behind |= {"middle": empty, "upper": behind["long"]}  # down to there it has no width
+    triangles = [rectangle(configuration, 0, 0, 64, 1), rectangle(configuration, 0, 0, 1, 40),
+                 behind]
+    bench = Bench(configuration, 0, 1, [SURVEY, None, FRAME_START, *map(draw, triangles), None],
+                  responses=1)
+    reads = [read[0] for read in bench.memory.reads if read[0] > bench.announcer.strobes[2]]
+    assert len(reads) == 64 + 40 + 1
+    assert reads[:-1] == list(range(reads[0], reads[0] + 64 + 40))
+    hidden = SPANS_WAITING - PIPELINE.lead
+    assert hidden == 11
+    assert reads[-1] - reads[-2] == max(1, empty - hidden)
 
 
 def test_the_fifo_holds_what_it_says():

@@ -5,7 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from hdl_bench.bench import Agent, Drive, simulate
+from hdl_bench.bench import Drive, Until, Watch, simulate
+from hdl_bench.domains import IN_SQUARES, MACHINES, SETTLED, blocks
 from hdl_bench.pictures import (
     covered,
     prepare,
@@ -13,7 +14,7 @@ from hdl_bench.pictures import (
     random_triangles,
     small_machine,
 )
-from hdl_bench.streams import Sink, Source, no_pause, pauses
+from hdl_bench.streams import Sink, Source, no_pause, once, pauses
 
 from cardcage.golden.specification import commands
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
@@ -28,16 +29,6 @@ def stride(interlace, units):
         axes = axes[:-1] + "x" * (interlace.units > 1)
     fixed = axes[: (interlace.units // units).bit_length() - 1]
     return 1 << fixed.count("x"), 1 << fixed.count("y")
-
-
-def blocks(first, end):
-    """The domain as aligned blocks of a power of two of units, each as large as can be."""
-    while first < end:
-        size = 1
-        while first % (2 * size) == 0 and first + 2 * size <= end:
-            size *= 2
-        yield first, size
-        first += size
 
 
 def expected_spans(configuration, display_list, prepared, first, end):
@@ -114,28 +105,6 @@ def columns(span):
     return range(span.x, span.end, span.stride)
 
 
-#: Clocks until the walker knows its lattice.
-SETTLED = 3
-
-
-def once(clocks, pause):
-    """``pause`` after waiting ``clocks`` at first."""
-    waits = iter([clocks])
-    return lambda: next(waits, None) or pause()
-
-
-class Until(Agent):
-    """Goes on until ``count()`` has reached ``wanted``."""
-
-    def __init__(self, count, wanted):
-        self._count = count
-        self._wanted = wanted
-
-    @property
-    def finished(self):
-        return self._count() >= self._wanted
-
-
 def run(configuration, display_list, first, end, pause):
     dut = TriangleSpans(configuration=configuration)
     kept, triangles = reached(configuration, display_list, first, end)
@@ -152,9 +121,15 @@ def run(configuration, display_list, first, end, pause):
         ctx.set(dut.end, end)
         ctx.set(dut.width, configuration.interlace.width)
 
-    simulate(dut, Drive(lines), source, Until(lambda: sum(item.last for item in sink.items),
-                                              len(triangles)), sink, after=3)
-    assert sum(item.last for item in sink.items) == len(triangles)
+    def ended():
+        return sum(item.last for item in sink.items)
+
+    def busy(ctx, clock):
+        # A triangle is there from the clock after it is taken until its last span is taken.
+        assert ctx.get(dut.busy) == (ended() < len(source.taken))
+
+    simulate(dut, Drive(lines), Watch(busy), source, Until(ended, len(triangles)), sink, after=3)
+    assert ended() == len(triangles)
     found = [(clock, span) for clock, span in zip(sink.clocks, sink.items, strict=True)
              if not span.none]
     for (_, span), (index, (x, y, pixels, across)) in zip(found, expected, strict=True):
@@ -165,22 +140,6 @@ def run(configuration, display_list, first, end, pause):
     ends = [place for place, span in enumerate(sink.items) if span.last]
     assert ends == sorted(ends) and ends[-1] == len(sink.items) - 1
     return prepared, expected, source, found
-
-
-#: Cards, the domain to walk, words (0: enough), picture.
-MACHINES = {
-    "one unit": ("PM", (0, 1), 0, (8, 8)),
-    "all four units": ("PMMMM", (0, 4), 0, (8, 8)),
-    "half of four": ("PMMPMM", (2, 4), 0, (9, 8)),
-    "the first of four": ("PMPMMM", (0, 1), 0, (8, 8)),
-    "three of four": ("PMPMMM", (1, 4), 0, (8, 7)),
-    "unequal share of eight": ("PMPMMMMMPMM", (1, 6), 0, (8, 8)),
-    "one of eight": ("PMMPMPMMMMM", (2, 3), 0, (8, 8)),
-    "most of sixteen": ("PMMMPMMMMMMMMMMMPMM", (3, 14), 0, (8, 8)),
-    "one of sixteen, small picture": ("PMMMMMPMPMMMMMMMMMM", (5, 6), 0, (8, 6)),
-    "coarser": ("PMPMMM", (1, 4), 8, (8, 8)),
-    "much coarser": ("PMM", (0, 2), 2, (8, 8)),
-}
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -206,17 +165,6 @@ def test_latency_and_throughput(machine, skew):
     spans, triangles = schedule(configuration, prepared, expected, first, end)
     assert [clock for clock, _ in found] == spans
     assert source.taken == triangles
-
-
-#: Cards, side of the squares, the share to walk, picture.
-IN_SQUARES = {
-    "one of two, rows only": ("2x(PMM)", 2, (2, 4), (13, 9)),
-    "first of four": ("4x(PM)", 2, (0, 1), (16, 9)),
-    "last of four, two units": ("4x(PMM)", 4, (6, 8), (19, 13)),
-    "one of eight": ("8x(PMM)", 2, (10, 12), (17, 16)),
-    "one of sixteen": ("16x(PM)", 2, (9, 10), (17, 16)),
-    "all": ("PMMMM", 4, (0, 4), (9, 8)),
-}
 
 
 @pytest.mark.parametrize("machine", IN_SQUARES)

@@ -56,6 +56,18 @@ class Drive(Agent):
         self._clock += 1
 
 
+class Until(Agent):
+    """Goes on until ``count()`` has reached ``wanted``."""
+
+    def __init__(self, count, wanted):
+        self._count = count
+        self._wanted = wanted
+
+    @property
+    def finished(self):
+        return self._count() >= self._wanted
+
+
 def simulate(component, *agents, limit=20_000, after=0):
     """Clock ``component`` until every agent is finished and ``after`` clocks more.
 

@@ -18,6 +18,12 @@ def pauses(seed):
     return lambda: source.choice((0, 0, 0, 1, 2, source.randrange(12)))
 
 
+def once(clocks, pause):
+    """``pause`` after waiting ``clocks`` at first."""
+    waits = iter([clocks])
+    return lambda: next(waits, None) or pause()
+
+
 class Source(Agent):
     """Sends ``items`` on ``stream``: valid and payload hold until taken.
 
