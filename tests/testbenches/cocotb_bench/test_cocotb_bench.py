@@ -142,11 +142,13 @@ def test_verilog_of_something_else_is_one_sentence():
         engine.run(frame_job(MACHINE, LISTED))
 
 
-def test_what_is_missing_is_named(monkeypatch):
-    monkeypatch.setenv("PATH", "")
+def test_what_is_missing_is_named(tmp_path, monkeypatch):
+    (tmp_path / "g++").touch(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
     with pytest.raises(ToolMissingError, match="iverilog is not on PATH; install"):
         find_simulator("icarus")
-    with pytest.raises(ToolMissingError, match="Verilator needs make"):
+    with pytest.raises(ToolMissingError, match="by make, which is not on PATH"):
         find_simulator("verilator")
     monkeypatch.setattr(simulators.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ToolMissingError, match=r"pip install 'cardcage\[cocotb\]'"):
