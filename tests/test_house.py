@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent
 #: The wings of each folder, from the bottom to the top: each imports only from those before it.
 WINGS = {
     "golden": (
-        "specification", "organisations", "scenes", "reference", "planning", "cycles",
+        "specification", "organisations", "scenes", "reference", "merging", "planning", "cycles",
         "hard_cases", "scene_argument", "scene_display_list", "precision"),
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",

@@ -1,0 +1,60 @@
+"""What nodes send to merge their pictures, and which pieces of the backplane a send takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Send(NamedTuple):
+    """``pixels`` pixels from one node to another, in one step of a merge."""
+
+    step: int
+    sender: int
+    receiver: int
+    pixels: int
+
+
+@dataclass(frozen=True)
+class Traffic:
+    """All sends of a merge among ``nodes`` nodes side by side.
+
+    A send takes every piece of the backplane between its two nodes; piece k lies between the
+    nodes k and k + 1.
+    """
+
+    nodes: int
+    sends: tuple[Send, ...]
+
+    @classmethod
+    def of(cls, nodes: int, sends: Iterable[Send]) -> Traffic:
+        return cls(nodes, tuple(sends))
+
+    @property
+    def pixels(self) -> int:
+        """Pixels sent in all."""
+        return sum(send.pixels for send in self.sends)
+
+    @property
+    def steps(self) -> list[int]:
+        """The longest send of each step: all nodes of a step wait for it."""
+        longest: dict[int, int] = {}
+        for send in self.sends:
+            longest[send.step] = max(longest.get(send.step, 0), send.pixels)
+        return [longest[step] for step in sorted(longest)]
+
+    @property
+    def pieces(self) -> NDArray[np.int64]:
+        """int64 (nodes - 1,): the pixels that pass over each piece of the backplane."""
+        passed = np.zeros(max(0, self.nodes - 1), np.int64)
+        for _, sender, receiver, pixels in self.sends:
+            passed[min(sender, receiver):max(sender, receiver)] += pixels
+        return passed
+
+    @property
+    def busiest_piece(self) -> int:
+        return int(self.pieces.max(initial=0))
