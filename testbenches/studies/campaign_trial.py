@@ -1,0 +1,114 @@
+"""One mutant against the tests, in a copy of the project that nobody else looks at."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from .mutants import Mutant
+
+#: The folders of a copy that Python finds, by the name of the package that they become.
+_PACKAGES = {"": "package", "golden": "golden", "hdl": "hdl", "testbenches": "testbenches"}
+_NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "cardcage-out", "build")
+
+#: Tests of whole machines and of what listens to them, for those that the file's own tests let
+#: live.  Not those that make mutants themselves: they look for the right text.
+BEYOND: Mapping[str, Sequence[str]] = {
+    "golden": ("tests/golden", "tests/machine/test_random_lists.py",
+               "tests/machine/test_hard_cases.py"),
+    "hdl": ("tests/hdl/test_cycle_constants.py", "tests/hdl/test_machine.py",
+            "tests/machine/test_random_lists.py", "tests/machine/test_frame_tags.py",
+            "tests/machine/test_interlace_in_squares.py",
+            "tests/testbenches/engines/test_activity_record.py"),
+    "testbenches": ("tests/testbenches",),
+}
+_NEVER = ("tests/machine/test_mutants.py", "tests/machine/test_hard_cases_mutants.py")
+
+
+def own_tests(root: Path, file: str) -> str:
+    """``hdl/video/x.py`` → ``tests/hdl/video/test_x.py``; where there is none, the tests of its
+    folder, or of the nearest one above that has some."""
+    place = Path(file)
+    mirror = Path("tests") / place.with_name(f"test_{place.name}")
+    if (root / mirror).is_file():
+        return mirror.as_posix()
+    return next(folder for above in place.parents
+                if (root / (folder := (Path("tests") / above).as_posix())).is_dir())
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """``passed``, seconds that it took, and what ``told``: the first test that failed, or why."""
+
+    passed: bool
+    seconds: float
+    told: str = ""
+
+
+class Copy:
+    """A copy of the project in ``folder``, which its tests import as ``cardcage``."""
+
+    def __init__(self, root: Path, folder: Path) -> None:
+        self.root = folder / "project"
+        shutil.copytree(root, self.root, ignore=_NOT_COPIED)
+        self._path = folder / "path"
+        package = self._path / "cardcage"
+        package.mkdir(parents=True)
+        for name, source in _PACKAGES.items():
+            if name and (self.root / source).is_dir():
+                (package / name).symlink_to(self.root / source)
+            for file in () if name else (self.root / source).glob("*"):
+                (package / file.name).symlink_to(file)
+        self._cache = folder / "models"
+
+    def run_mutant(self, mutant: Mutant, tests: Iterable[str], limit: float) -> Outcome:
+        """The tests with the mutant in its place; afterwards the copy is as before."""
+        file = self.root / mutant.file
+        right = file.read_bytes()
+        try:
+            self._write(file, mutant.of(right))
+            return self.run(tests, limit)
+        finally:
+            self._write(file, right)
+
+    def run(self, tests: Iterable[str], limit: float) -> Outcome:
+        """The tests until the first that fails; whoever takes more than ``limit`` seconds fails."""
+        begin = time.monotonic()
+        with subprocess.Popen(
+                [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=no",
+                 *(f"--ignore={test}" for test in _NEVER), *tests],
+                cwd=self.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                env=os.environ | {"PYTHONPATH": str(self._path),
+                                  "CARDCAGE_CACHE": str(self._cache)},
+                start_new_session=True) as process:
+            try:
+                said, _ = process.communicate(timeout=limit)
+            except subprocess.TimeoutExpired:
+                return Outcome(False, time.monotonic() - begin, "no end in time")
+            finally:
+                # What the tests have started ends with them.
+                _end_session(process)
+        found = re.search(r"^(?:FAILED|ERROR) (\S+)", said, re.MULTILINE)
+        told = "" if not process.returncode else found[1] if found else said.strip()[-200:]
+        return Outcome(not process.returncode, time.monotonic() - begin, told)
+
+    @staticmethod
+    def _write(file: Path, text: bytes) -> None:
+        file.write_bytes(text)
+        # Python knows what it has compiled by the seconds and the size of the source alone.
+        for compiled in (file.parent / "__pycache__").glob(f"{file.stem}.*.pyc"):
+            compiled.unlink()
+
+
+def _end_session(process: subprocess.Popen[str]) -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
