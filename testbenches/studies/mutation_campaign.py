@@ -85,7 +85,8 @@ def run_campaign(root: Path, mutants: Sequence[Mutant], results: Results, *,
                  begin: Callable[[str], None] = lambda doing: None) -> None:
     """Runs those that have no verdict yet, ``jobs`` at a time, each in a copy of ``root``.
 
-    ``own``: against the tests of its file only, not those of whole machines.  Tests that take ``patience`` seconds and four times those of the right program have no end.
+    ``own``: against the tests of its file only, not those of whole machines.  Tests that take
+    ``patience`` seconds and four times as long as those of the right program have no end.
     Raises ``RuntimeError`` where tests fail without a mutant.
     """
     waiting = [mutant for mutant in mutants
