@@ -110,5 +110,6 @@ class EdgeColumns(wiring.Component):
         width = Const(widths.pop()) if len(widths) == 1 else self.width
         if self.configuration.edges_on_screen:
             return Mux(column >= width, width, column)
+        # Both ends are what is held to them: < or <= 0, >= or > width are the same.
         magnitude = column.as_unsigned()[:-1]
         return Mux(column < 0, 0, Mux(magnitude >= width, width, magnitude))

@@ -72,8 +72,8 @@ class _File:
     def _run(self, node: ast.AST) -> Iterator[ast.AST]:
         """The node and all below it that has a meaning when the program runs."""
         match node:
-            case ast.keyword("reset_less", ast.Constant(value=True)):
-                return  # to be reset where it need not be is no fault
+            case ast.keyword("reset_less" | "frozen", ast.Constant(value=True)):
+                return  # no fault: reset where it need not be, or what nobody changes
         yield node
         for name, value in ast.iter_fields(node):
             if name in ("annotation", "returns"):

@@ -89,7 +89,7 @@ def test_the_mutants_of_a_file(toy):
     ("m.d.sync += a.eq(b)", ["a.eq(b) → []"]),
     ("with m.If(a): pass", ["a → 1", "a → 0"]),
     ("x = Mux(a, b, c)", ["Mux(a, b, c) → Mux(a, c, b)"]),
-    ("x = Signal(reset_less=True)", []),
+    ("x = Signal(reset_less=True), dataclass(frozen=True)", []),
     ("x = Signal(reset_less=False)", ["reset_less=False → reset_less=True"]),
     ("x = a if b else c", ["b → True", "b → False"]),
     ("x = 1 <= a < b", ["1 <= a < b → 1 < a < b", "1 <= a < b → 1 <= a <= b",
