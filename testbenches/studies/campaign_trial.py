@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -34,24 +33,28 @@ BEYOND: Mapping[str, Sequence[str]] = {
 _NEVER = ("tests/machine/test_mutants.py", "tests/machine/test_hard_cases_mutants.py")
 
 
-def own_tests(root: Path, file: str) -> str:
-    """``hdl/video/x.py`` → ``tests/hdl/video/test_x.py``; where there is none, the tests of its
-    folder, or of the nearest one above that has some."""
+def own_tests(root: Path, file: str) -> list[str]:
+    """``hdl/video/x.py`` → ``tests/hdl/video/test_x.py``; where there is none, the tests in
+    ``tests/hdl`` that import it; where none does, those of its folder or of one above."""
     place = Path(file)
     mirror = Path("tests") / place.with_name(f"test_{place.name}")
     if (root / mirror).is_file():
-        return mirror.as_posix()
-    return next(folder for above in place.parents
-                if (root / (folder := (Path("tests") / above).as_posix())).is_dir())
+        return [mirror.as_posix()]
+    module = re.compile(r"cardcage\." + re.escape(".".join(place.with_suffix("").parts)) + r"\b")
+    found = [test.relative_to(root).as_posix()
+             for test in sorted((root / "tests" / place.parts[0]).rglob("test_*.py"))
+             if module.search(test.read_text(encoding="utf-8"))]
+    return found or next([folder] for above in place.parents if (
+        root / (folder := (Path("tests") / above).as_posix())).is_dir())
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """``passed``, seconds that it took, and what ``told``: the first test that failed, or why."""
+    """``passed``, or ``why`` not, and which tests that takes: the first that failed, or all."""
 
     passed: bool
-    seconds: float
-    told: str = ""
+    why: str = ""
+    failed: tuple[str, ...] = ()
 
 
 class Copy:
@@ -82,7 +85,7 @@ class Copy:
 
     def run(self, tests: Iterable[str], limit: float) -> Outcome:
         """The tests until the first that fails; whoever takes more than ``limit`` seconds fails."""
-        begin = time.monotonic()
+        tests = tuple(tests)
         with subprocess.Popen(
                 [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=no",
                  *(f"--ignore={test}" for test in _NEVER), *tests],
@@ -93,13 +96,16 @@ class Copy:
             try:
                 said, _ = process.communicate(timeout=limit)
             except subprocess.TimeoutExpired:
-                return Outcome(False, time.monotonic() - begin, "no end in time")
+                return Outcome(False, "no end in time", tests)
             finally:
                 # What the tests have started ends with them.
-                _end_session(process)
-        found = re.search(r"^(?:FAILED|ERROR) (\S+)", said, re.MULTILINE)
-        told = "" if not process.returncode else found[1] if found else said.strip()[-200:]
-        return Outcome(not process.returncode, time.monotonic() - begin, told)
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+        if not process.returncode:
+            return Outcome(True)
+        if found := re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", said, re.MULTILINE):
+            return Outcome(False, found[1], (found[1],))
+        return Outcome(False, said.strip()[-200:], tests)
 
     @staticmethod
     def _write(file: Path, text: bytes) -> None:
@@ -107,8 +113,3 @@ class Copy:
         # Python knows what it has compiled by the seconds and the size of the source alone.
         for compiled in (file.parent / "__pycache__").glob(f"{file.stem}.*.pyc"):
             compiled.unlink()
-
-
-def _end_session(process: subprocess.Popen[str]) -> None:
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)

@@ -7,7 +7,7 @@ import json
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -47,26 +47,26 @@ class Results:
     """What was found, in a file that is whole after every mutant.
 
     ``verdicts``  key of a mutant → killed or survived, and the test that told
-    ``clean``     tests → seconds that they take of the right program
+    ``clean``     tests that killed one, and that the right program passes
     """
 
     verdicts: dict[str, tuple[str, str]]
-    clean: dict[str, float]
+    clean: set[str]
     file: Path | None
 
     @classmethod
     def read(cls, file: Path | None) -> Results:
         if file is None or not file.exists():
-            return cls({}, {}, file)
+            return cls({}, set(), file)
         kept = json.loads(file.read_text(encoding="utf-8"))
         return cls({key: (verdict, told) for key, (verdict, told) in kept["verdicts"].items()},
-                   kept["clean"], file)
+                   set(kept["clean"]), file)
 
     def write(self) -> None:
         if self.file is not None:
             with atomic_file(self.file, "--resume") as temporary:
                 temporary.write_text(json.dumps(
-                    {"clean": self.clean, "verdicts": self.verdicts}, indent=1,
+                    {"clean": sorted(self.clean), "verdicts": self.verdicts}, indent=1,
                     ensure_ascii=False) + "\n", encoding="utf-8")
 
     def verdict(self, mutant: Mutant, known: Sequence[Equivalent]) -> str:
@@ -80,14 +80,14 @@ def is_equivalent(mutant: Mutant, known: Sequence[Equivalent]) -> bool:
 
 
 def run_campaign(root: Path, mutants: Sequence[Mutant], results: Results, *,
-                 known: Sequence[Equivalent] = EQUIVALENT, jobs: int = 1, patience: float = 60.0,
+                 known: Sequence[Equivalent] = EQUIVALENT, jobs: int = 1, patience: float = 600.0,
                  own: bool = False,
                  begin: Callable[[str], None] = lambda doing: None) -> None:
     """Runs those that have no verdict yet, ``jobs`` at a time, each in a copy of ``root``.
 
     ``own``: against the tests of its file only, not those of whole machines.  Tests that take
-    ``patience`` seconds and four times as long as those of the right program have no end.
-    Raises ``RuntimeError`` where tests fail without a mutant.
+    ``patience`` seconds have no end.  Raises ``RuntimeError`` where a test that kills a mutant
+    fails of the right program, too.
     """
     waiting = [mutant for mutant in mutants
                if mutant.key not in results.verdicts and not is_equivalent(mutant, known)]
@@ -100,7 +100,7 @@ def run_campaign(root: Path, mutants: Sequence[Mutant], results: Results, *,
             copy = copies.get()
             try:
                 begin(f"{mutant.file}:{mutant.line}")
-                stages = list(_stages(root, mutant.file))[:1 if own else None]
+                stages = _stages(root, mutant.file)[:1 if own else None]
                 return _trial(copy, mutant, stages, results, patience)
             finally:
                 copies.put(copy)
@@ -111,7 +111,7 @@ def run_campaign(root: Path, mutants: Sequence[Mutant], results: Results, *,
         for done in as_completed(trials):
             outcome = done.result()
             results.verdicts[trials[done].key] = (SURVIVED if outcome.passed else KILLED,
-                                                  outcome.told)
+                                                  outcome.why)
             results.write()
 
 
@@ -119,24 +119,21 @@ def _trial(copy: Copy, mutant: Mutant, stages: Sequence[Sequence[str]], results:
            patience: float) -> Outcome:
     """The tests of one stage after the other, until some fail."""
     for tests in stages:
-        name = " ".join(tests)
-        if name not in results.clean:
-            clean = copy.run(tests, limit=3600)
-            if not clean.passed:
-                raise RuntimeError(f"{name}: fails without a mutant: {clean.told}")
-            results.clean[name] = round(clean.seconds, 1)
-        outcome = copy.run_mutant(mutant, tests, limit=patience + 4 * results.clean[name])
+        outcome = copy.run_mutant(mutant, tests, patience)
         if not outcome.passed:
+            if not results.clean.issuperset(outcome.failed):
+                clean = copy.run(outcome.failed, patience)
+                if not clean.passed:
+                    raise RuntimeError(f"{clean.why}: fails without a mutant")
+                results.clean.update(outcome.failed)
             break
     return outcome
 
 
-def _stages(root: Path, file: str) -> Iterator[list[str]]:
+def _stages(root: Path, file: str) -> list[list[str]]:
     """The tests of the file, and those of whole machines."""
-    yield [own_tests(root, file)]
     beyond = [test for test in BEYOND.get(file.partition("/")[0], ()) if (root / test).exists()]
-    if beyond:
-        yield beyond
+    return [own_tests(root, file), *([beyond] if beyond else [])]
 
 
 def report(mutants: Sequence[Mutant], results: Results,
