@@ -177,7 +177,7 @@ def test_what_kills_passes_without_a_mutant(toy):
     ("hdl/video/video_scan_generator.py", "tests/hdl/video/test_video_scan_generator.py"),
     ("hdl/mapping/lattice.py", "tests/hdl/mapping/test_interlace.py"),
     ("hdl/arithmetic/limb_products.py", "tests/hdl/arithmetic"),
-    ("golden/scenes/built_in/tetra.py", "tests/golden/scenes"),
+    ("golden/precision/edge_functions.py", "tests/golden/precision"),
 ])
 def test_the_tests_of_a_file(file, tests):
     """Those of its name, those that import it, or those of the folder."""
