@@ -34,18 +34,20 @@ _NEVER = ("tests/machine/test_mutants.py", "tests/machine/test_hard_cases_mutant
 
 
 def own_tests(root: Path, file: str) -> list[str]:
-    """``hdl/video/x.py`` → ``tests/hdl/video/test_x.py``; where there is none, the tests in
-    ``tests/hdl`` that import it; where none does, those of its folder or of one above."""
+    """``hdl/video/x.py`` → ``tests/hdl/video/test_x.py``; where there is none, all tests of its
+    folder and those in ``tests/hdl`` that import it, or else those of the next folder above."""
     place = Path(file)
-    mirror = Path("tests") / place.with_name(f"test_{place.name}")
-    if (root / mirror).is_file():
+    folder = Path("tests") / place.parent
+    if (root / (mirror := folder / f"test_{place.name}")).is_file():
         return [mirror.as_posix()]
     module = re.compile(r"cardcage\." + re.escape(".".join(place.with_suffix("").parts)) + r"\b")
-    found = [test.relative_to(root).as_posix()
-             for test in sorted((root / "tests" / place.parts[0]).rglob("test_*.py"))
+    found = [test.relative_to(root) for test in sorted((root / folder.parts[0] / folder.parts[1])
+                                                       .rglob("test_*.py"))
              if module.search(test.read_text(encoding="utf-8"))]
-    return found or next([folder] for above in place.parents if (
-        root / (folder := (Path("tests") / above).as_posix())).is_dir())
+    if (root / folder).is_dir():
+        found = [folder, *(test for test in found if folder not in test.parents)]
+    return [test.as_posix() for test in found or [
+        next(above for above in folder.parents if (root / above).is_dir())]]
 
 
 @dataclass(frozen=True)

@@ -174,14 +174,16 @@ def test_what_kills_passes_without_a_mutant(toy):
 
 
 @pytest.mark.parametrize(("file", "tests"), [
-    ("hdl/video/video_scan_generator.py", "tests/hdl/video/test_video_scan_generator.py"),
-    ("hdl/mapping/lattice.py", "tests/hdl/mapping/test_interlace.py"),
-    ("hdl/arithmetic/limb_products.py", "tests/hdl/arithmetic"),
-    ("golden/precision/edge_functions.py", "tests/golden/precision"),
+    ("hdl/video/video_scan_generator.py", ["tests/hdl/video/test_video_scan_generator.py"]),
+    ("hdl/mapping/lattice.py", ["tests/hdl/mapping",
+                                "tests/hdl/processing_element/test_share_filter.py"]),
+    ("hdl/arithmetic/limb_products.py", ["tests/hdl/arithmetic"]),
+    ("golden/scenes/built_in/of_no_test.py", ["tests/golden/scenes"]),
+    ("golden/scenes/built_in/tetra.py", ["tests/golden/scenes/test_scene_argument.py"]),
 ])
 def test_the_tests_of_a_file(file, tests):
-    """Those of its name, those that import it, or those of the folder."""
-    assert (ROOT / file).is_file() and tests in own_tests(ROOT, file)
+    """Those of its name; those of its folder and those that import it; those of a folder above."""
+    assert own_tests(ROOT, file) == tests
 
 
 def test_what_is_said_to_be_equivalent_is_a_mutant():
