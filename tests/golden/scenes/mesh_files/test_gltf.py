@@ -336,6 +336,8 @@ def test_chunks_of_a_glb(tmp_path):
     short = data[:8] + struct.pack("<I", len(data) - 4) + data[12:-4]
     assert "a chunk of 72 bytes in the 68 that are left" in refusal(tmp_path, short)
     assert "version 1" in refusal(tmp_path, data[:4] + b"\1\0\0\0" + data[8:])
+    assert refusal(tmp_path, data.replace(b"JSON", b"JSOX", 1)).startswith(
+        "contents: a .glb without JSON")
 
 
 @pytest.mark.parametrize("text, reason", [
