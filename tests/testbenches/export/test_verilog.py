@@ -185,6 +185,8 @@ def test_description(texts):
     [response] = [port for port in facts["ports"] if port["name"] == "responses__payload"]
     assert response["fields"] == [{"name": "kind", "offset": 0, "width": 8},
                                   {"name": "value", "offset": 8, "width": 32}]
+    responses = facts["commands"]["responses"]
+    assert (responses["bits"], responses["fields"]) == (response["width"], response["fields"])
     kinds = {kind["name"]: kind["fields"] for kind in facts["commands"]["responses"]["kinds"]}
     assert kinds["PICTURE"] == [{"name": "width", "offset": 8, "width": 16},
                                 {"name": "height", "offset": 24, "width": 16}]
