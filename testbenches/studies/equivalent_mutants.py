@@ -54,10 +54,6 @@ EQUIVALENT = (
     Equivalent(
         "hdl/arithmetic/delay.py",
         "def delayed(m: Module, value, clocks: int, name: str, *, reset_less: bool = True, "
-        "enable=1):", "True → False", "To be reset where it need not be is no fault."),
-    Equivalent(
-        "hdl/arithmetic/delay.py",
-        "def delayed(m: Module, value, clocks: int, name: str, *, reset_less: bool = True, "
         "enable=1):", "1 → 2", "Whatever is not 0 is high."),
     *(Equivalent(
         "hdl/arithmetic/narrowing.py",
