@@ -47,6 +47,21 @@ EQUIVALENT = (
         "if (first != length).any() or not 0 <= length <= values.shape[1] - at:",
         "0 <= length <= values.shape[1] - at → 1 <= length <= values.shape[1] - at",
         "Empty lists are then read row by row, to the same."),
+    Equivalent(
+        "golden/scenes/mesh_files/stl.py",
+        'self._refuse(start + int(words[last]) - 1, "a facet outside of a solid")',
+        "start + int(words[last]) - 1 → start + int(words[last]) - 0",
+        "The next letter is on the same line, and only the line is said."),
+    *(Equivalent(
+        "golden/precision/edge_functions.py",
+        "high = np.clip(np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 1, 0, size)", change,
+        "The box is a pixel wider than it need be, and what of it is off the screen is cut away.")
+      for change in (
+          "np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 1 → "
+          "np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 0",
+          "np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 1 → "
+          "np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 2",
+          "size + 2 → size + 1", "size + 2 → size + 3", "-2 → -3", "-2 → -1", "-2 → 2")),
     *(Equivalent(
         "hdl/arithmetic/divider.py", "if self._interval > 1:", f"self._interval > 1 → {wrong}",
         "Where each clock is a stage, nobody reads what a stage makes of nothing.")
@@ -60,6 +75,8 @@ EQUIVALENT = (
         "return Mux(value < low, Const(low, width), Mux(value > high, Const(high, width), value))"
         "[:width]", change, "Either end is what is held to it.")
       for change in ("value < low → value <= low", "value > high → value >= high")),
+    Equivalent(
+        "hdl/depth_test/signature.py", '"forwarded": Out(1),', "Out(1) → Out(2)", _WIDER),
     *(Equivalent(
         "hdl/mapping/interlace.py",
         "pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))",
