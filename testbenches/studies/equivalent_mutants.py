@@ -120,4 +120,8 @@ EQUIVALENT = (
         "hdl/triangle_setup/outline.py", "clockwise = area.sum >= 0", f"area.sum >= 0 → {wrong}",
         "A triangle without area is dropped, whichever way round it is.")
       for wrong in ("area.sum > 0", "area.sum >= 1")),
+    Equivalent(
+        "testbenches/export/verilog.py",
+        "return address if len(address) == width else Cat(address, C(0, width - len(address)))",
+        "len(address) == width → False", "Nothing is put before what is wide enough."),
 )
