@@ -44,7 +44,7 @@ def own_tests(root: Path, file: str) -> list[str]:
     found = [test.relative_to(root) for test in sorted((root / folder.parts[0] / folder.parts[1])
                                                        .rglob("test_*.py"))
              if module.search(test.read_text(encoding="utf-8"))]
-    if (root / folder).is_dir():
+    if len(folder.parts) > 2 and (root / folder).is_dir():  # a wing, not all of them
         found = [folder, *(test for test in found if folder not in test.parents)]
     return [test.as_posix() for test in found or [
         next(above for above in folder.parents if (root / above).is_dir())]]

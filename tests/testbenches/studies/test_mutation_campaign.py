@@ -174,16 +174,19 @@ def test_what_kills_passes_without_a_mutant(toy):
 
 
 @pytest.mark.parametrize(("file", "tests"), [
-    ("hdl/video/video_scan_generator.py", ["tests/hdl/video/test_video_scan_generator.py"]),
-    ("hdl/mapping/lattice.py", ["tests/hdl/mapping",
-                                "tests/hdl/processing_element/test_share_filter.py"]),
-    ("hdl/arithmetic/limb_products.py", ["tests/hdl/arithmetic"]),
-    ("golden/scenes/built_in/of_no_test.py", ["tests/golden/scenes"]),
-    ("golden/scenes/built_in/tetra.py", ["tests/golden/scenes/test_scene_argument.py"]),
+    ("hdl/toy/numbers.py", ["tests/hdl/toy/test_numbers.py"]),
+    ("hdl/toy/letters.py", ["tests/hdl/toy", "tests/hdl/words/test_words.py"]),
+    ("hdl/toy/other/digits.py", ["tests/hdl/toy"]),
+    ("hdl/letters.py", ["tests/hdl/words/test_letters.py"]),
+    ("hdl/digits.py", ["tests/hdl"]),
 ])
-def test_the_tests_of_a_file(file, tests):
+def test_the_tests_of_a_file(toy, file, tests):
     """Those of its name; those of its folder and those that import it; those of a folder above."""
-    assert own_tests(ROOT, file) == tests
+    words = toy / "tests/hdl/words"
+    words.mkdir()
+    (words / "test_words.py").write_text("import cardcage.hdl.toy.letters\n")
+    (words / "test_letters.py").write_text("from cardcage.hdl.letters import a\n")
+    assert own_tests(toy, file) == tests
 
 
 def test_what_is_said_to_be_equivalent_is_a_mutant():
