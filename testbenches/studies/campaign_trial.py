@@ -22,7 +22,7 @@ _NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "cardcag
 #: Tests of whole machines and of what listens to them, for those that the file's own tests let
 #: live.  Not those that make mutants themselves: they look for the right text.
 BEYOND: Mapping[str, Sequence[str]] = {
-    "golden": ("tests/golden", "tests/hdl/backplane/test_command_words_document.py",
+    "golden": ("tests/hdl/backplane/test_command_words_document.py", "tests/golden",
                "tests/machine/test_random_lists.py"),
     "hdl": ("tests/hdl/test_cycle_constants.py", "tests/hdl/test_machine.py",
             "tests/machine/test_random_lists.py", "tests/machine/test_frame_tags.py",
@@ -47,7 +47,7 @@ def own_tests(root: Path, file: str) -> list[str]:
     if len(folder.parts) > 2 and (root / folder).is_dir():  # a wing, not all of them
         found = [folder, *(test for test in found if folder not in test.parents)]
     return [test.as_posix() for test in found or [
-        next(above for above in folder.parents if (root / above).is_dir())]]
+        next(above for above in (folder, *folder.parents) if (root / above).is_dir())]]
 
 
 @dataclass(frozen=True)
