@@ -15,8 +15,9 @@ from pathlib import Path
 
 from .mutants import Mutant
 
-#: The folders of a copy that Python finds, by the name of the package that they become.
-_PACKAGES = {"": "package", "golden": "golden", "hdl": "hdl", "testbenches": "testbenches"}
+#: The folders beside ``package`` that become parts of it.
+HOUSES = ("golden", "hdl", "testbenches")
+
 _NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "*.egg-info", "cardcage-out", "build")
 
 #: Tests of whole machines and of what listens to them, for those that the file's own tests let
@@ -68,11 +69,8 @@ class Copy:
         self._path = folder / "path"
         package = self._path / "cardcage"
         package.mkdir(parents=True)
-        for name, source in _PACKAGES.items():
-            if name and (self.root / source).is_dir():
-                (package / name).symlink_to(self.root / source)
-            for file in () if name else (self.root / source).glob("*"):
-                (package / file.name).symlink_to(file)
+        for source in (*(self.root / "package").iterdir(), *(self.root / name for name in HOUSES)):
+            (package / source.name).symlink_to(source)
         self._cache = folder / "models"
 
     def run_mutant(self, mutant: Mutant, tests: Iterable[str], limit: float) -> Outcome:
