@@ -33,6 +33,13 @@ EQUIVALENT = (
         "golden/hard_cases/coverage.py",
         "points[1:-1, 1:-1] += (RandomNumbers(5).integers(5, 5, 5, 2) - 2) / 2",
         "RandomNumbers(5).integers(5, 5, 5, 2) → RandomNumbers(5).integers(4, 5, 5, 2)", _SCENE),
+    *(Equivalent(
+        "golden/hard_cases/sizes.py",
+        "return screen_list(fan((width // 2 + 0.5, height // 3 + 0.5), ring), width=width,", change,
+        _SCENE)
+      for change in ("width // 2 + 0.5 → width // 2 - 0.5", "width // 2 → width // 3",
+                     "width // 2 → width // 1", "height // 3 + 0.5 → height // 3 - 0.5",
+                     "height // 3 → height // 4", "height // 3 → height // 2")),
     Equivalent(
         "golden/hard_cases/whole_lists.py",
         "+ (numbers.integers(20 * 256, count, 3, 2) - 10 * 256) / 256)", "10 * 256 → 9 * 256",
