@@ -136,6 +136,16 @@ def test_sparse(tmp_path, base, where):
     assert "a sparse value for element 9 of 4" in refusal(tmp_path, made)
 
 
+def test_of_no_sparse_values_it_does_not_matter_where_they_lie(tmp_path):
+    made = Gltf()
+    index = made.accessor(VERTICES)
+    place = {"bufferView": made.view(b""), "byteOffset": 1 << 20}
+    made.json["accessors"][index]["sparse"] = {
+        "count": 0, "indices": {**place, "componentType": 5125}, "values": place}
+    made.primitive(index)
+    assert np.array_equal(load(tmp_path, made).corners(), CORNERS)
+
+
 def test_accessors_that_leave_their_buffer(tmp_path):
     made = tetrahedron()
     made.json["accessors"][0]["count"] = 5
