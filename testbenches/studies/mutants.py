@@ -92,15 +92,15 @@ class _File:
                     yield self._constant(node, value - 1)
             case ast.Compare(left, operators, others):
                 for place, (operator, other) in enumerate(zip(operators, others, strict=True)):
-                    wrong = [*operators[:place], _COMPARISONS[type(operator)](),
+                    these = [*operators[:place], _COMPARISONS[type(operator)](),
                              *operators[place + 1:]]
-                    yield self._mutant(node, ast.Compare(left, wrong, others), other.lineno)
+                    yield self._mutant(node, ast.Compare(left, these, others), other.lineno)
             case ast.BinOp(left, operator, right) if type(operator) in _OPERATORS:
                 wrong = ast.BinOp(left, _OPERATORS[type(operator)](), right)
                 yield self._mutant(node, wrong, right.lineno)
             case ast.BoolOp(operator, values):
-                other = ast.Or() if isinstance(operator, ast.And) else ast.And()
-                yield self._mutant(node, ast.BoolOp(other, values), values[1].lineno)
+                opposite = ast.Or() if isinstance(operator, ast.And) else ast.And()
+                yield self._mutant(node, ast.BoolOp(opposite, values), values[1].lineno)
             case ast.UnaryOp(ast.Invert() | ast.Not() | ast.USub(), operand):
                 yield self._mutant(node, operand, node.lineno)
             case ast.If(test=test) | ast.IfExp(test=test):
@@ -142,9 +142,10 @@ class _File:
             node.value = before
         return self._mutant(node, ast.Constant(value), node.lineno, f"{right} → {wrong}")
 
-    def _mutant(self, node: ast.AST, wrong: ast.AST, line: int, change: str = "") -> Mutant:
+    def _mutant(self, node: ast.expr, wrong: ast.expr, line: int, change: str = "") -> Mutant:
         text = ast.unparse(wrong)
         begin = self._begins[node.lineno - 1] + node.col_offset
+        assert node.end_lineno is not None and node.end_col_offset is not None
         end = self._begins[node.end_lineno - 1] + node.end_col_offset
         change = change or f"{ast.unparse(node)} → {text}"
         line_text = self._lines[line - 1].decode().strip()

@@ -100,7 +100,7 @@ def run_campaign(root: Path, mutants: Sequence[Mutant], results: Results, *,
             copy = copies.get()
             try:
                 begin(f"{mutant.file}:{mutant.line}")
-                stages = _stages(root, mutant.file)[:1 if own else None]
+                stages = _stages(copy.root, mutant.file)[:1 if own else None]
                 return _trial(copy, mutant, stages, results, patience)
             finally:
                 copies.put(copy)
