@@ -93,6 +93,10 @@ EQUIVALENT = (
       for more in (0, 2)),
     Equivalent(
         "hdl/memory_unit/memory_access.py", '"read_busy": In(1),', "In(1) → In(2)", _WIDER),
+    *(Equivalent(
+        "hdl/memory_unit/memory_unit.py", "COMPARED_BITS = 4", f"4 → {bits}",
+        "With each bit false alarms, which cost clocks only, are half as many or twice as many.")
+      for bits in (3, 5)),
     Equivalent(
         "hdl/memory_unit/tag_sweep.py", "wraps = words == 1 << len(self.address)",
         "1 << len(self.address) → 1 >> len(self.address)",
@@ -108,6 +112,9 @@ EQUIVALENT = (
         "Either end is what is held to it.")
       for change in ("column < 0 → column <= 0", "column < 0 → column < 1",
                      "magnitude >= width → magnitude > width")),
+    Equivalent(
+        "hdl/rasteriser/edge_columns.py", "return Mux(column >= width, width, column)",
+        "column >= width → column > width", "The end is what is held to it."),
     Equivalent(
         "hdl/triangle_setup/edge_setup.py",
         "self._product = PipelinedMultiplier(a_bits=position, b_bits=height + 1, pairs=2)",
