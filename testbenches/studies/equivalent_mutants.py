@@ -113,6 +113,8 @@ EQUIVALENT = (
       for change in ("column < 0 → column <= 0", "column < 0 → column < 1",
                      "magnitude >= width → magnitude > width")),
     Equivalent(
+        "hdl/processing_element/control.py", '"idle": Out(1),', "Out(1) → Out(2)", _WIDER),
+    Equivalent(
         "hdl/rasteriser/edge_columns.py", "return Mux(column >= width, width, column)",
         "column >= width → column > width", "The end is what is held to it."),
     Equivalent(
