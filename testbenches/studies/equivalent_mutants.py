@@ -98,6 +98,11 @@ EQUIVALENT = (
         "With each bit false alarms, which cost clocks only, are half as many or twice as many.")
       for bits in (3, 5)),
     Equivalent(
+        "hdl/memory_unit/one_port_memory.py",
+        "m.d.comb += [address.eq(access.sweep_address), read.en.eq(access.sweep),",
+        "read.en.eq(access.sweep) → *()", "A port reads unless it is told not to, and an answer is "
+        "looked at by whoever has asked, in the next clock only."),
+    Equivalent(
         "hdl/memory_unit/tag_sweep.py", "wraps = words == 1 << len(self.address)",
         "1 << len(self.address) → 1 >> len(self.address)",
         "The comparison tells the last word as well as the carry does."),
