@@ -84,6 +84,7 @@ EQUIVALENT = (
       for change in ("value < low → value <= low", "value > high → value >= high")),
     Equivalent(
         "hdl/depth_test/signature.py", '"forwarded": Out(1),', "Out(1) → Out(2)", _WIDER),
+    Equivalent("hdl/backplane/words.py", '"none": 1,', "1 → 2", _WIDER),
     *(Equivalent(
         "hdl/mapping/interlace.py",
         "pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))",
