@@ -17,6 +17,7 @@ def _fan(width: int, height: int) -> DisplayList:
     right, bottom = width + 0.25, height + 0.25
     ring = [(-0.25, -0.25), (width // 3, -9.5), (right, -0.25), (width + 11.5, height // 3),
             (right, bottom), (width // 2, height + 7.25), (-0.25, bottom), (-5.75, height // 2)]
+    # Any pixel centre would do for the hub.
     return screen_list(fan((width // 2 + 0.5, height // 3 + 0.5), ring), width=width,
                        height=height)
 

@@ -23,7 +23,8 @@ def box_rows(position: Array, width: int, height: int) -> Spans:
     ``position`` (n, 3, 2) in pixels.  ``Spans.triangle`` is the triangle's number.
     """
     size = np.array([width, height])
-    # Held to the screen first: what is far outside it need not fit 64 bits.
+    # Held to the screen first: what is far outside it need not fit 64 bits.  By how much, and that
+    # a pixel is to spare at either end, changes no picture.
     low = np.clip(np.floor(np.clip(position.min(axis=1), -2, size + 2)) - 1, 0, size)
     high = np.clip(np.ceil(np.clip(position.max(axis=1), -2, size + 2)) + 1, 0, size)
     first, rows = low.astype(np.int64), (high - low).astype(np.int64)

@@ -111,7 +111,9 @@ class Divider(wiring.Component):
             next_dividend = register(digits_left(first + 1), "dividend")
             next_quotient = register(quotient_so_far(beyond - 1), "quotient")
             next_divisor = register(self.divisor_bits, "divisor")
-            if self._interval > 1:  # without a new one, on with what the stage has
+            # Without a new one, on with what the stage has; which nobody reads where each clock is
+            # a stage, and >= would only be more hardware.
+            if self._interval > 1:
                 remainder = Mux(loaded, remainder, next_remainder)
                 dividend = Mux(loaded, dividend, next_dividend << 1)[:digits_left(first)]
                 quotient = Mux(loaded, quotient, next_quotient)

@@ -30,5 +30,6 @@ def floor_shift(value: Value, fraction_bits: int) -> Value:
 def saturate(value: Value, low: int, high: int) -> Value:
     """``value`` held to ``[low, high]``, both ends included; ``low`` is not negative, and the
     result unsigned and just wide enough for ``high``."""
+    # Either end is what is held to it: < or <=, > or >= are the same.
     width = len(Const(high))
     return Mux(value < low, Const(low, width), Mux(value > high, Const(high, width), value))[:width]

@@ -64,6 +64,8 @@ class PixelAddress(wiring.Component):
         aligned = all(interlace.pitch.bit_count() == 1 for interlace in interlaces)
         row = Signal.like(self.y)
         column = Signal.like(self.x)
+        # The one more makes no difference: where the largest is a power of two, all are, each the
+        # half of another rounded up, and nobody reads it.
         pitch = Signal(range(max(interlace.pitch for interlace in interlaces) + 1))
         with m.Switch(self.total):
             for interlace in interlaces:

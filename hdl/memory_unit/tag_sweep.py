@@ -96,7 +96,8 @@ class TagSweep(wiring.Component):
         asked = Signal()
         m.d.sync += [served.eq(~self.busy), overwritten.eq(self.overwritten)]
         following = self.address + 1
-        # Where the address wraps by itself, the carry tells the last word.
+        # Where the address wraps by itself, the carry tells the last word: less hardware than a
+        # comparison, which would tell the same.
         wraps = words == 1 << len(self.address)
         last = following[-1] if wraps else self.address == words - 1
 

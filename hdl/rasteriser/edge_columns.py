@@ -108,6 +108,7 @@ class EdgeColumns(wiring.Component):
         if self.configuration.edges_on_screen and 1 << len(column) <= min(widths):
             return column
         width = Const(widths.pop()) if len(widths) == 1 else self.width
+        # Both ends are what is held to them: < or <= 0, >= or > width are the same.
         if self.configuration.edges_on_screen:
             return Mux(column >= width, width, column)
         magnitude = column.as_unsigned()[:-1]

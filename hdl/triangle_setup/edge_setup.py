@@ -14,9 +14,9 @@ __all__ = ["EdgeSetup", "position_bits"]
 
 
 def position_bits(configuration: MachineConfiguration) -> int:
-    """Bits of a signed difference of a vertex coordinate and half a pixel of the machine."""
-    shifts = max(interlace.x_shift for interlace in configuration.interlaces())
-    return 1 + max(configuration.coordinate_bits, configuration.sub_bits + shifts)
+    """Bits of a signed difference of a vertex coordinate and half a pixel of the machine, which is
+    no larger than the screen, however coarse the picture."""
+    return configuration.coordinate_bits + 1
 
 
 class EdgeSetup(wiring.Component):
@@ -54,9 +54,8 @@ class EdgeSetup(wiring.Component):
         self.configuration = c = configuration
         position, height = position_bits(c), c.edge_height_bits
         grid = grid_layout(c)
-        # x by height, and distance by run, which is at most the height: below 2**(both widths).
-        self._product = PipelinedMultiplier(a_bits=max(position, c.coordinate_bits + 1),
-                                            b_bits=height + 1, pairs=2)
+        # x by height, and run, which has as many bits as x, by distance.
+        self._product = PipelinedMultiplier(a_bits=position, b_bits=height + 1, pairs=2)
         common = {"divisor_bits": height, "fraction_bits": c.edge_fraction_bits,
                   "quotient_bits": c.edge_word_bits + 1, "interval": c.setup_interval}
         self._start_divider = Divider(dividend_bits=position + height - c.sub_bits + 3, **common)

@@ -40,6 +40,7 @@ def sorted_triangle_layout(configuration: MachineConfiguration) -> data.StructLa
         "clockwise": 1,
         "double_area": 2 * bits,
         "x": signed(bits), "y": signed(bits),
+        # Of a difference one bit more than this would repeat the sign.
         "middle_x": signed(bits + 1), "middle_y": bits,
         "lower_x": signed(bits + 1), "lower_y": bits,
         "values": data.StructLayout(values),
@@ -132,7 +133,8 @@ class TriangleOutline(wiring.Component):
         box = delayed(m, pixels.box, beside, "box")
         empty = delayed(m, pixels.empty, beside, "empty")
 
-        # The area's sign tells the orientation, and which of the two others comes first.
+        # The area's sign tells the orientation, and which of the two others comes first.  What is
+        # said of a triangle without area, >= or >, is the same: it is dropped.
         judged = Signal(layout, reset_less=True)
         clockwise = area.sum >= 0
         m.d.sync += [

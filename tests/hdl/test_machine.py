@@ -1,5 +1,7 @@
 """The cage connects its cards, whatever they are, and nothing else."""
 
+from collections import Counter
+
 import pytest
 from hdl_bench.bench import Watch, simulate
 from hdl_bench.pictures import exact_words, prepare, random_triangles, small_machine
@@ -9,6 +11,7 @@ from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification import commands
+from cardcage.golden.specification.activity import Activity
 from cardcage.golden.specification.card_order import domains
 from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -134,6 +137,35 @@ def test_a_frame_read_back(order):
     for item, (kind, value) in zip(sink.items, expected, strict=True):
         assert item.kind == kind
         assert value is None or item.value == value, ResponseKind(item.kind)
+
+
+def test_an_idle_element_is_told_why():
+    """By the full FIFO of another one and by what the host offers; the others speak themselves."""
+    scene = random_triangles("observed", 24, width=8, height=8, flat=True)
+    configuration = configuration_of("PMPMMM", fraction_bits=scene_fraction_bits(scene),
+                                     observe=True)
+    machine = Machine(configuration=configuration)
+    controller = machine.controller
+    triangles = triangle_words.prepared_triangles(configuration, prepare(configuration, scene))
+    words = [commands.frame_start(scene.background), *triangles,
+             commands.command(Opcode.FRAME_END)]
+    told = Counter()
+
+    def watch(ctx, clock):
+        offered = ctx.get(machine.commands.valid) and ctx.get(machine.commands.payload) in triangles
+        assert ctx.get(controller.more) == offered
+        idle = Activity.SETUP if offered else Activity.DRAIN
+        if not ctx.get(controller.broadcast.ready):
+            idle = Activity.BROADCAST
+        for place, element in enumerate(machine.processing_elements):
+            said = ctx.get(element.activity)
+            wanted = idle if said == Activity.SETUP else said
+            assert ctx.get(machine.activity[place]) == wanted
+            told[wanted] += said == Activity.SETUP
+
+    simulate(machine, Source(machine.commands, words, pauses("observed")),
+             Sink(machine.responses, 7), Watch(watch))
+    assert min(told[kind] for kind in (Activity.SETUP, Activity.DRAIN, Activity.BROADCAST)) > 2
 
 
 @pytest.mark.parametrize(("name", "cards", "units"),

@@ -172,3 +172,25 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
         assert loads[element, 0] == pytest.approx(loads[element, 1], abs=1e-6)
         loads[element] += pick.choice((0, 0, 0, pause))
     assert pause or held > 10
+
+
+def test_each_row_costs_its_span_and_an_end_without_one_nothing():
+    listed = scene(5, n=60, size=6)
+    configuration = wide_machine(listed, cards="PMPMMM", block=1, clocks_per_pixel=256)
+    _, (spans,) = spans_of(configuration, listed, 1 << 20)
+    pipeline = Pipeline()
+    entries = entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)
+
+    class Numbers:
+        """Each span takes as many accesses as its number says, of every kind."""
+
+        def of(self, spans):
+            numbers = np.arange(len(spans.length)) * spans.squares
+            return numbers[:, np.newaxis, np.newaxis] * np.ones((1, 3, 2))
+
+    costs = OnePort(configuration, Numbers(), pipeline).costs(entries, spans)
+    found = [(pair, offset, -1 if accesses is None else accesses[1][1])
+             for pair, cost in enumerate(costs) for offset, accesses in cost]
+    assert found == list(zip(entries.pair.tolist(), entries.offset.tolist(),
+                             entries.span.tolist(), strict=True))
+    assert {-1, 0} < set(entries.span.tolist())

@@ -251,3 +251,9 @@ def test_a_wrong_pixel_is_complained_of(name, break_it):
         calls.clear()
         complaints.append(expectation.judge(case.make(), wrong))
     assert any(complaints)
+
+
+def test_the_snap_ties_lie_on_either_side_of_0():
+    """-0.5, -1.5, -2.5, -3.5 and 0.5 units, rounded half up."""
+    position = hard_case("snap-ties").make().position[2].tolist()
+    assert position == [[0, -1], [-2, -3], [1, 9 * 256]]

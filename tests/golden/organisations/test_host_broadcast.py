@@ -10,6 +10,7 @@ CAGES = {
     "one of each": {"cards": "PM"},
     "equal shares": {"cards": "4x(PMM)"},
     "unequal shares": {"cards": "PMPMMPPMPMMMM"},
+    "a share of blocks that grow": {"cards": "PMMMPMMMMM"},
     "squares": {"cards": "4x(PMM)", "block": 4},
     "skewed": {"cards": "2x(PMM)", "skew": True},
     "coarser": {"cards": "PMMPMM", "words": 20},

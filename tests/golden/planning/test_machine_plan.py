@@ -114,6 +114,15 @@ def test_an_edge_that_needs_its_last_fraction_bit():
     assert wrong > 0
 
 
+def test_the_triangle_that_decides_may_be_the_smaller_one():
+    """57 square units along 9 pixels need a bit more than 506 on one."""
+    sliver, pixel = [[0, 8], [140, 9], [83, 9]], [[0, 0], [22, 0], [0, 23]]
+    assert [scene_needs(triangles(each)).exact_fraction_bits for each in (sliver, pixel)] == [10, 9]
+    needs = scene_needs(triangles(pixel, sliver))
+    assert (needs.exact_double_area, needs.exact_extent) == (57, 8)
+    assert needs.exact_fraction_bits == 10
+
+
 def carried_range(display_list, fraction_bits):
     """The least and the greatest whole part of carried depth at any covered pixel."""
     prepared = prepare(display_list, fraction_bits=fraction_bits)

@@ -203,3 +203,10 @@ def test_opcodes_are_distinct_and_fit():
     assert len({int(opcode) for opcode in Opcode}) == len(Opcode)
     assert all(0 < opcode < 1 << commands.OPCODE_BITS for opcode in Opcode)
     assert all(0 < kind < 1 << commands.RESPONSE_KIND_BITS for kind in ResponseKind)
+
+
+def test_the_opcode_of_a_word_is_its_lowest_bits():
+    """Nothing above them, be it unused or of the body, counts."""
+    for opcode in range(1 << commands.OPCODE_BITS):
+        for rest in (0, 1, 1 << commands.BODY_OFFSET - commands.OPCODE_BITS, 2**200 + 5):
+            assert commands.opcode_of(rest << commands.OPCODE_BITS | opcode) == opcode

@@ -96,6 +96,15 @@ def test_exact_fraction_bits_of_arrays():
     assert bits.tolist() == [1, (2**40 * 1001).bit_length(), 5]
 
 
+def test_triangles_on_the_screen_are_exact_unless_an_error_is_allowed():
+    extent = 16 + 12 - 2
+    exact = fixed_point.exact_fraction_bits(16 * 12 << 2 * 8, extent)
+    assert fixed_point.on_screen_fraction_bits(16, 12, 8) == exact
+    for max_error in (1, 2, 5):
+        bits = fixed_point.on_screen_fraction_bits(16, 12, 8, max_error)
+        assert bits == fixed_point.error_fraction_bits(extent, max_error) < exact
+
+
 @pytest.mark.parametrize("value_bits", [1, 8, 24, 32])
 @pytest.mark.parametrize("fraction_bits", [0, 1, 5, 20, 64])
 @pytest.mark.parametrize("extent", [0, 1, 14, 1022, 8190])

@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from hdl_bench.bench import Agent, rejects, simulate
+from hdl_bench.bench import Agent, Drive, Watch, rejects, simulate
 
 from cardcage.hdl.controller.frame_tags import FrameTags
 
@@ -118,3 +118,16 @@ def test_while_a_pass_does_not_end_each_tag_is_given_out_once():
 @pytest.mark.parametrize("wrong", [1, 7])
 def test_bad_widths(wrong):
     rejects(FrameTags, "tag_bits", tag_bits=wrong)
+
+
+def test_latency():
+    """The clock after a start has the new tag."""
+    dut = FrameTags(tag_bits=4)
+    tags = []
+
+    def start(ctx, clock):
+        ctx.set(dut.swept, 1)
+        ctx.set(dut.start, clock == 3)
+
+    simulate(dut, Drive(start, 8), Watch(lambda ctx, clock: tags.append(ctx.get(dut.depth))))
+    assert tags.index(tags[-1]) == 3 + dut.latency + 1

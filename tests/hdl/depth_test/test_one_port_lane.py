@@ -32,7 +32,26 @@ def draw(fragments, *, units=2, **settings):
     assert not any(busy[last + 2:])
     assert all(busy[write[0]] for write in memory.writes)
     assert all(busy[clock + step] for clock in taken for step in range(1, OnePortLane.latency))
+    assert run.forwarded_in == list(forwarded_in(run, places))
     return run
+
+
+def forwarded_in(run, places):
+    """The clocks in which a fragment is compared with a winner of its pixel that is written just
+    then, or was written last, when nothing was idle since."""
+    written = {number: write[0] for number, write in
+               zip(run.winners, run.memory.writes, strict=True)}
+    compared, last, before = -1, None, None  # the last winner, and the one before it
+    for number, place in enumerate(places):
+        answered = max(run.source.taken[number] + 1, compared)
+        compared = max(answered + 1, -1 if last is None else written[last])
+        for winner in (last, before) if last is not None and written[last] == compared else (last,):
+            if winner is not None and places[winner] == place and all(
+                    run.busy[written[winner] + 1:compared]):
+                yield compared
+                break
+        if number in written:
+            last, before = number, last
 
 
 @pytest.mark.parametrize(("scan", "refused"), [

@@ -34,7 +34,19 @@ def draw(fragments, *, units=2, **settings):
     assert all(busy[clock + step] for clock in taken for step in range(1, LATENCY))
     assert all(busy[write[0]] for write in run.memory.writes)
     assert not any(busy[taken[-1] + LATENCY + 1:])
+    # A winner written now or a clock ago is what the fragment read a clock ago has to see; the one
+    # a clock ahead of it is seen a clock later.
+    read, written = dict(zip(taken, places, strict=True)), {
+        clock: place for clock, *place in run.memory.writes}
+    assert run.forwarded_in == [
+        clock for clock in range(len(busy))
+        if same(read.get(clock - 1), written.get(clock), written.get(clock - 1))
+        or same(read.get(clock - 2), written.get(clock))]
     return run
+
+
+def same(place, *others):
+    return place is not None and list(place) in others
 
 
 @pytest.mark.parametrize("units", [1, 2, 4])

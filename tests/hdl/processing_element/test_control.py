@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from hdl_bench.bench import Agent, Watch, simulate
+from hdl_bench.bench import Agent, Watch, rejects, simulate
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
 from cardcage.golden.specification.commands import ResponseKind
@@ -173,3 +173,8 @@ def test_operations_of_a_newer_controller_are_passed_over(kind):
     source, *_ = run([kind, Operation.SURVEY, kind, kind])
     assert source.taken[0] == 0
     assert source.taken[1:] == [source.taken[1] + clock for clock in range(3)]
+
+
+@pytest.mark.parametrize("name", ["id_bits", "depth_bits"])
+def test_bad_sizes(name):
+    rejects(ProcessingElementControl, name, **{"id_bits": 3, "depth_bits": 8} | {name: 0})

@@ -77,3 +77,25 @@ def test_latency_and_throughput():
     assert dut.latency == 4
     assert source.taken == list(range(len(source.taken)))
     assert sink.clocks == [clock + dut.latency for clock in source.taken]
+
+
+@pytest.mark.parametrize("width", [5, 9, 15])
+@pytest.mark.parametrize("more", [0, 3])
+def test_no_extent_leaves_the_screen_whatever_the_words(width, more):
+    """With as many bits as a column on the screen has, none of them signed, and with more."""
+    bits = width.bit_length() + more
+    configuration = small_machine("PM", width, 4, edge_column_bits=bits, edge_fraction_bits=3)
+    assert configuration.edges_on_screen == (more == 0)
+    columns = list(range(1 << bits))
+    dut = EdgeColumns(configuration=configuration)
+    source = Source(dut.rows, [{"long_edge_left": 1, "long": {"start": column << 3 | 5},
+                                "short": {"start": other << 3}}
+                               for column, other in zip(columns, columns[::-1], strict=True)])
+    sink = Sink(dut.extents, len(columns))
+    simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.width, width)), source, sink)
+
+    def held(column):
+        return 0 if more and column >> bits - 1 else min(column, width)
+
+    assert [(extent.first, extent.beyond) for extent in sink.items] == [
+        (held(column), held(other)) for column, other in zip(columns, columns[::-1], strict=True)]

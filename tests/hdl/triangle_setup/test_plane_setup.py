@@ -1,6 +1,7 @@
 """Start and increments of single interpolants against ``golden.reference.triangle_setup``."""
 
 import random
+from dataclasses import replace
 
 import pytest
 from hdl_bench.bench import Drive, rejects, simulate
@@ -13,11 +14,12 @@ from cardcage.hdl.triangle_setup.plane_setup import PlaneSetup, Slot
 INPUTS = ("slot", "upper", "first", "second", "factor_1", "factor_2", "offset", "double_area")
 
 
-def slots_of(configuration, seed, count, interpolant):
+def slots_of(configuration, seed, count, interpolant, *, color_bits=8):
     """(inputs, result) of each slot of each triangle: what the slot does not need is left out."""
     listed = random_triangles(seed, count, width=configuration.width, height=configuration.height,
                               sub_bits=configuration.sub_bits, depth_bits=configuration.depth_bits,
                               extreme=True)
+    listed = replace(listed, color=listed.color >> 8 - color_bits)
     prepared = prepare(configuration, listed)
     planes, values = ((prepared.depth, listed.depth) if interpolant == "depth" else
                       (prepared.color[0], listed.color[:, :, 0]))
@@ -49,12 +51,12 @@ def slots_of(configuration, seed, count, interpolant):
     return slots
 
 
-def run(configuration, slots, interpolant, seed, gap=lambda: 0):
+def run(configuration, slots, interpolant, seed, gap=lambda: 0, **changes):
     """All ``slots`` through the unit, ``gap()`` clocks later than it could take each."""
     widths = ({"value_bits": configuration.depth_bits,
                "word_bits": configuration.depth_plane_bits} if interpolant == "depth" else
               {"value_bits": 8, "word_bits": configuration.channel_plane_bits})
-    dut = PlaneSetup(configuration=configuration, **widths)
+    dut = PlaneSetup(configuration=configuration, **widths | changes)
     grid = {name: getattr(configuration.interlace, name)
             for name in ("width", "height", "x_shift", "y_shift")}
     starts = Starts(dut, dut.start, INPUTS, [inputs for inputs, _ in slots],
@@ -96,6 +98,15 @@ def test_equal_to_golden_at_random_times(kind, interpolant):
     pick = random.Random(f"gaps {seed}")
     run(configuration, slots, interpolant, seed,
         lambda: pick.choice((0, 0, 1, 3, pick.randrange(40))))
+
+
+def test_one_bit_is_enough():
+    """Of the values, and of what is carried."""
+    configuration = small_machine("PM", 16, 16, shading="gouraud")
+    slots = slots_of(configuration, "one bit", 12, "red", color_bits=1)
+    assert {inputs["first"] for inputs, _ in slots if "first" in inputs} == {-1, 0, 1}
+    assert {result & 1 for _, result in slots} == {0, 1}
+    run(configuration, slots, "red", "one bit", value_bits=1, word_bits=1)
 
 
 @pytest.mark.parametrize(("interval", "actual"), [(1, 1), (2, 2), (9, 9), (256, 34)])

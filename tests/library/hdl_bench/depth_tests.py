@@ -57,7 +57,7 @@ class DepthTestRun:
 
     ``background`` is in memory before, or random depths; ``settings`` are those of
     ``MemoryBusModel``.  Attributes: ``source``, ``memory``, the numbers of the ``winners``,
-    ``busy`` by clock, how often a depth was ``forwarded``.
+    ``busy`` by clock, how often a depth was ``forwarded``, and ``forwarded_in`` which clocks.
     """
 
     def __init__(self, dut, fragments, *, units, words, pause=no_pause, background=None, after=40,
@@ -73,15 +73,16 @@ class DepthTestRun:
                 depth[place], color[place] = item["depth"], item["color"]
                 self.winners.append(number)
         self.source = Source(dut.fragments, fragments, pause)
-        self.forwarded, self.busy = 0, []
+        self.forwarded_in, self.busy = [], []
 
         def look(ctx, clock):
-            self.forwarded += ctx.get(dut.forwarded)
+            self.forwarded_in += [clock] * ctx.get(dut.forwarded)
             self.busy.append(ctx.get(dut.busy))
             if clock > 1 and not any(self.busy[-2:]):
                 assert ctx.get(dut.memory.write).address == 0
 
         simulate(dut, self.source, memory, Watch(look), after=after)
+        self.forwarded = len(self.forwarded_in)
         assert memory.depth == depth
         assert memory.back == color
 

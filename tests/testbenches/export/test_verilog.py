@@ -86,6 +86,16 @@ def test_the_smallest_machines_are_accepted(tmp_path, fields):
     assert verilator_lint(tmp_path, "machine.vlt", "machine.v") == (0, "")
 
 
+@pytest.mark.parametrize("ports", ["one_port", "two_port"])
+def test_the_only_word_of_a_memory_is_word_0(ports):
+    """Its address has no bits, but for the one that Verilog asks for."""
+    configuration = MachineConfiguration(cards="PM", width=1, height=1, fraction_bits=0)
+    assert configuration.words == 1
+    name = f"{ports}_memory"
+    text = component_verilog(component_for(configuration, name), name)
+    assert set(re.findall(r"\.(?:read|write)_address\((.*?)\)", text)) == {"1'h0"}
+
+
 def assert_all_used(text, top):
     """Every module but the first is instantiated."""
     modules = re.findall(r"^module (\S+?)\(", text, re.MULTILINE)
@@ -185,6 +195,8 @@ def test_description(texts):
     [response] = [port for port in facts["ports"] if port["name"] == "responses__payload"]
     assert response["fields"] == [{"name": "kind", "offset": 0, "width": 8},
                                   {"name": "value", "offset": 8, "width": 32}]
+    responses = facts["commands"]["responses"]
+    assert (responses["bits"], responses["fields"]) == (response["width"], response["fields"])
     kinds = {kind["name"]: kind["fields"] for kind in facts["commands"]["responses"]["kinds"]}
     assert kinds["PICTURE"] == [{"name": "width", "offset": 8, "width": 16},
                                 {"name": "height", "offset": 24, "width": 16}]

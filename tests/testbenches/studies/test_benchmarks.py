@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark",
-                                  "word_fuzz"])
+                                  "mutation_campaign", "word_fuzz"])
 def test_a_study_runs_from_a_clone(name):
     done = subprocess.run([sys.executable, "-m", f"testbenches.studies.{name}", "--help"],
                           cwd=ROOT, capture_output=True, text=True, timeout=100)

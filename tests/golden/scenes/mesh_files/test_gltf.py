@@ -136,6 +136,16 @@ def test_sparse(tmp_path, base, where):
     assert "a sparse value for element 9 of 4" in refusal(tmp_path, made)
 
 
+def test_of_no_sparse_values_it_does_not_matter_where_they_lie(tmp_path):
+    made = Gltf()
+    index = made.accessor(VERTICES)
+    place = {"bufferView": made.view(b""), "byteOffset": 1 << 20}
+    made.json["accessors"][index]["sparse"] = {
+        "count": 0, "indices": {**place, "componentType": 5125}, "values": place}
+    made.primitive(index)
+    assert np.array_equal(load(tmp_path, made).corners(), CORNERS)
+
+
 def test_accessors_that_leave_their_buffer(tmp_path):
     made = tetrahedron()
     made.json["accessors"][0]["count"] = 5
@@ -336,6 +346,8 @@ def test_chunks_of_a_glb(tmp_path):
     short = data[:8] + struct.pack("<I", len(data) - 4) + data[12:-4]
     assert "a chunk of 72 bytes in the 68 that are left" in refusal(tmp_path, short)
     assert "version 1" in refusal(tmp_path, data[:4] + b"\1\0\0\0" + data[8:])
+    assert refusal(tmp_path, data.replace(b"JSON", b"JSOX", 1)).startswith(
+        "contents: a .glb without JSON")
 
 
 @pytest.mark.parametrize("text, reason", [

@@ -295,6 +295,20 @@ def test_edges_stay_sharp_and_facets_flat():
     assert not np.allclose(corner_normals(smooth), of_face, atol=0.1)
 
 
+@pytest.mark.parametrize("corner", range(3))
+def test_the_normal_of_a_corner_is_the_mean_by_the_angles_there(corner):
+    """Of a face with 90 degrees and one with 30, at either end of the fold between them."""
+    cosine, sine = np.sqrt(3) / 2, 0.5
+    across = np.array([0, cosine, sine])  # from the fold, along x, up the second face
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, -1, 0], [cosine, *(sine * across[1:])]])
+    faces = np.array([np.roll([0, 2, 1], corner), np.roll([0, 1, 3], corner)])
+    level, raised = [0.0, 0.0, 1.0], [0.0, -sine, cosine]
+    assert np.allclose(face_normals(Mesh(vertices, faces)), [level, raised])
+    wanted = 90 * np.array(level) + 30 * np.array(raised)
+    found = corner_normals(Mesh(vertices, faces))[[0, 1], [corner, corner]]
+    assert np.allclose(found, wanted / np.linalg.norm(wanted))
+
+
 # ---- what is left out
 
 

@@ -1,0 +1,36 @@
+"""What is exported by itself is what the machine has."""
+
+from amaranth.hdl import Fragment
+from amaranth.lib import wiring
+from hdl_bench.pictures import small_machine
+
+from cardcage.hdl.components import COMPONENTS
+from cardcage.hdl.machine import Machine
+from cardcage.testbenches.export.verilog import component_ports
+
+
+def test_every_component_is_a_part_of_a_machine(monkeypatch):
+    """Of its class, with its ports: in a machine that sets triangles up, of one kind of memory or
+    the other."""
+    parts = []
+    made = wiring.Component.__init__
+
+    def note(self, *arguments, **named):
+        made(self, *arguments, **named)
+        parts.append(self)
+
+    lonely = set(COMPONENTS)
+    for ports in (1, 2):
+        configuration = small_machine("PMMPMM", 9, 7, shading="gouraud", setup="hardware",
+                                      memory_ports=ports)
+        with monkeypatch.context() as patch:
+            patch.setattr(wiring.Component, "__init__", note)
+            Fragment.get(Machine(configuration=configuration), None)
+        for name in sorted(lonely):
+            alone = COMPONENTS[name](configuration)
+            if any(type(part) is type(alone) and component_ports(part) == component_ports(alone)
+                   for part in parts):
+                lonely.remove(name)
+            Fragment.get(alone, None)  # Amaranth wants each elaborated once
+        parts.clear()
+    assert not lonely
