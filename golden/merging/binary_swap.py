@@ -23,26 +23,27 @@ def merge_binary_swap(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Tra
     """The merged picture, put together from its parts, and the sends of what was drawn.
 
     Where the number of nodes is no power of two, pairs of neighbours merge first, in step 0, until
-    it is.  Parts are runs of pixels, row by row.
+    it is.  A part is halved into its even and its odd pixels, so that both halves have as much to
+    do whatever was drawn where.
     """
     kept, sends = _fold([_each(picture, _flat) for picture in pictures])
     step = len(sends) and 1
-    parts = [slice(0, pictures[0].order.size)] * len(kept)
+    parts = [slice(0, None, 1)] * len(kept)
     for distance in (1 << bit for bit in range(len(kept).bit_length() - 1)):
         swapped = []
         for place, (node, own) in enumerate(kept):
             partner, others = kept[place ^ distance]
             lower = place & distance == 0
-            part = _half(parts[place], first=lower)
-            mine, sent = _part(own, parts[place], part), _part(others, parts[place], part)
+            first = slice(0 if lower else 1, None, 2)
+            mine, sent = _part(own, first), _part(others, first)
             sends.append(Send(step, partner, node, int(np.count_nonzero(sent.drawn))))
             swapped.append((node, nearer(mine, sent) if lower else nearer(sent, mine)))
-        parts = [_half(part, first=place & distance == 0) for place, part in enumerate(parts)]
+            has = parts[place]
+            parts[place] = slice(has.start + first.start * has.step, None, 2 * has.step)
         kept = swapped
         step += 1
-    in_order = sorted(zip(parts, kept, strict=True), key=lambda item: item[0].start)
-    whole = _joined([picture for _, (_, picture) in in_order])
     height, width = pictures[0].order.shape
+    whole = _joined(parts, [picture for _, picture in kept])
     return (_each(whole, lambda array: array.reshape(height, width, *array.shape[1:])),
             Traffic.of(len(pictures), sends))
 
@@ -72,20 +73,16 @@ def _flat(array: NDArray[Any]) -> NDArray[Any]:
     return array.reshape(-1, *array.shape[2:])
 
 
-def _half(part: slice, *, first: bool) -> slice:
-    middle = (part.start + part.stop) // 2
-    return slice(part.start, middle) if first else slice(middle, part.stop)
+def _part(picture: NodePicture, part: slice) -> NodePicture:
+    return _each(picture, lambda array: array[part])
 
 
-def _part(picture: NodePicture, has: slice, wanted: slice) -> NodePicture:
-    """The pixels ``wanted`` of a picture that has the pixels ``has``."""
-    return _each(picture, lambda array: array[wanted.start - has.start:wanted.stop - has.start])
-
-
-def _joined(parts: list[NodePicture]) -> NodePicture:
-    pictures = [part.picture for part in parts]
-    return NodePicture(
-        Picture(np.concatenate([picture.color for picture in pictures]),
-                np.concatenate([picture.depth for picture in pictures]),
-                np.concatenate([picture.winner for picture in pictures])),
-        np.concatenate([part.order for part in parts]))
+def _joined(parts: list[slice], pictures: list[NodePicture]) -> NodePicture:
+    """One picture, of which each of ``pictures`` has a part."""
+    size = sum(picture.order.size for picture in pictures)
+    whole = _each(pictures[0], lambda array: np.empty((size, *array.shape[1:]), array.dtype))
+    for part, picture in zip(parts, pictures, strict=True):
+        inner, of = whole.picture, picture.picture
+        inner.color[part], inner.depth[part], inner.winner[part] = of.color, of.depth, of.winner
+        whole.order[part] = picture.order
+    return whole

@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from amaranth.hdl import Fragment
 from hdl_bench.bench import Agent, Watch, rejects, simulate
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
@@ -178,3 +179,6 @@ def test_operations_of_a_newer_controller_are_passed_over(kind):
 @pytest.mark.parametrize("name", ["id_bits", "depth_bits"])
 def test_bad_sizes(name):
     rejects(ProcessingElementControl, name, **{"id_bits": 3, "depth_bits": 8} | {name: 0})
+    control = ProcessingElementControl(**{"id_bits": 3, "depth_bits": 8} | {name: 1})
+    Fragment.get(control, None)
+    assert getattr(control, name) == 1
