@@ -10,13 +10,14 @@ from click.testing import CliRunner
 
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
-from testbenches.studies import golden_benchmark, word_fuzz
+from cardcage.testbenches.support.cache import ENVIRONMENT_VARIABLE
+from testbenches.studies import golden_benchmark, model_building, word_fuzz
 
 ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark",
-                                  "mutation_campaign", "word_fuzz"])
+                                  "model_building", "mutation_campaign", "word_fuzz"])
 def test_a_study_runs_from_a_clone(name):
     done = subprocess.run([sys.executable, "-m", f"testbenches.studies.{name}", "--help"],
                           cwd=ROOT, capture_output=True, text=True, timeout=100)
@@ -29,6 +30,20 @@ def test_golden_benchmark():
     assert done.exit_code == 0, done.output
     assert re.search(r"500 triangles, [\d,]+ fragments, 512x512", done.output)
     assert re.search(r"exact +best +[\d.]+ ms, median +[\d.]+ ms", done.output)
+
+
+def test_model_building(monkeypatch):
+    try:
+        find_verilator()
+    except ToolMissingError as missing:
+        pytest.skip(f"simulator verilator: {missing}")
+    monkeypatch.setenv(ENVIRONMENT_VARIABLE, "")  # set back at the end
+    done = CliRunner().invoke(model_building.main, ["--machine", "PM", "--size", "8",
+                                                    "--cycles", "1000"])
+    assert done.exit_code == 0, done.output
+    [with_runtime] = re.findall(r"^the runtime, once, and +([\d.]+) s", done.output, re.MULTILINE)
+    [alone] = re.findall(r"^PM +([\d.]+) s +[\d.]+ s +1.0 +[\d.]+$", done.output, re.MULTILINE)
+    assert float(alone) < float(with_runtime)
 
 
 def test_word_fuzz(monkeypatch):
