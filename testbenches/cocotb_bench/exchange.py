@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ...golden.organisations.machine_facts import FOLLOWING
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ...golden.specification.video_timing import VideoTiming
@@ -114,11 +115,15 @@ def read_configuration(path: Path) -> MachineConfiguration:
 
 def configuration_of(values: dict[str, Any]) -> MachineConfiguration:
     """A configuration from ``dataclasses.asdict`` of one, or from the fields that have no
-    default; figures that follow from these may be among them."""
+    default; figures that follow from these may be among them.  ``InputError`` where another
+    name is: the machine would not be the one described."""
     for name in ("cards", "width", "height"):
         if name not in values:
             raise InputError(f"configuration: {name}: missing")
     known = {field.name for field in fields(MachineConfiguration)}
+    for name in values.keys() - known - FOLLOWING.keys():
+        raise InputError(f"configuration: {name}: unknown to this version of Cardcage; export the "
+                         "machine again")
     values = {name: value for name, value in values.items() if name in known}
     if values.get("timing") is not None:
         try:

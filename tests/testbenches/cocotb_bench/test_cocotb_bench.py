@@ -6,13 +6,14 @@ import json
 import re
 import subprocess
 import sys
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from cardcage.golden.organisations.machine_facts import machine_facts
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
@@ -157,7 +158,7 @@ def test_what_is_missing_is_named(tmp_path, monkeypatch):
 
 def test_a_configuration_survives_its_description(tmp_path):
     described = tmp_path / "machine.json"
-    described.write_text(json.dumps({"configuration": asdict(MACHINE) | {"figure": 4}, "top": ""}))
+    described.write_text(json.dumps({"configuration": machine_facts(MACHINE), "top": ""}))
     assert read_configuration(described) == MACHINE
     short = {"cards": "PM", "width": 8, "height": 8}
     assert configuration_of(short).words == 64
@@ -170,6 +171,8 @@ def test_a_configuration_survives_its_description(tmp_path):
     ('{"configuration": {"cards": "PM", "width": 8}}', "height: missing"),
     ('{"configuration": {"cards": "PM", "width": 0, "height": 8}}', "width: 0"),
     ('{"configuration": {"cards": "PM", "width": 8, "height": 8, "timing": {}}}', "timing: "),
+    ('{"configuration": {"cards": "PM", "width": 8, "height": 8, "edge_remainder_bits": 9}}',
+     "edge_remainder_bits: unknown to this version of Cardcage; export the machine again"),
 ])
 def test_a_wrong_description_is_one_line(tmp_path, text, message):
     described = tmp_path / "machine.json"
