@@ -71,14 +71,16 @@ class Mesh:
                                  f"needs {np.dtype(dtype)} of shape {shape}")
         if face_count == 0:
             raise InputError("mesh: faces: there are none; export the mesh with its triangles")
-        if not np.isfinite(self.vertices).all():
+        # The least and the greatest tell of all, without arrays of as many in between.
+        limits = (self.vertices.min(), self.vertices.max()) if vertex_count else (0.0, 0.0)
+        if not np.isfinite(limits).all():
             index = int(np.flatnonzero(~np.isfinite(self.vertices).all(axis=1))[0])
             raise InputError(f"mesh: vertices: vertex {index} is not a number or infinite; "
                              "repair the mesh")
-        if vertex_count and np.abs(self.vertices).max() > COORDINATE_LIMIT:
+        if max(-limits[0], limits[1]) > COORDINATE_LIMIT:
             raise InputError(f"mesh: vertices: coordinates beyond {COORDINATE_LIMIT:g}; "
                              "scale the mesh down")
-        if self.faces.min() < 0 or self.faces.max() >= vertex_count:
+        if self.faces.view(np.uint64).max() >= vertex_count:  # a negative one is a great one
             bad = (self.faces < 0) | (self.faces >= vertex_count)
             face = int(np.flatnonzero(bad.any(axis=1))[0])
             raise InputError(f"mesh: faces: face {face} names vertex {self.faces[bad][0]}, but "

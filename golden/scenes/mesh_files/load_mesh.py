@@ -30,6 +30,11 @@ UP_OF_FORMAT: Final[dict[str, Vector]] = {
 
 MESH_EXTENSIONS: Final = tuple(UP_OF_FORMAT)
 
+#: Bytes of an array that is made and freed at once.  From then on the C library of Linux keeps
+#: for the next arrays what arrays of up to this size free, rather than hand it back to the
+#: system, which clears every page anew: that would take as long as the reading itself.
+_KEPT: Final = 24 << 20
+
 #: Each takes the bytes of the file and the folder where other files that it names are found.
 _READERS: Final[dict[str, Callable[[bytes, Path], Reading]]] = {
     ".obj": read_obj,
@@ -56,6 +61,7 @@ def load_mesh(path: str | os.PathLike[str]) -> Mesh:
     if suffix not in UP_OF_FORMAT:
         raise InputError(f"{source}: extension: {suffix or 'none'} is not a mesh format; use one "
                          f"of {' '.join(MESH_EXTENSIONS)}")
+    np.empty(_KEPT, np.uint8)
     data = _contents(source)
     try:
         with np.errstate(all="ignore"):

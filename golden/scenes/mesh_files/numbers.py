@@ -1,16 +1,15 @@
-"""Numbers written in decimal, many at a time."""
+"""Numbers written in decimal, many at a time, in any spelling."""
 
 from __future__ import annotations
 
 import warnings
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-_SPACE: Final = 32
-_FIXED: Final = b"0123456789+-. \t\n\v\f\r"
-_DECIMALS: Final = 12
+from .decimals import decimals
+from .text_lines import Lines
 
 
 def numbers(
@@ -20,11 +19,11 @@ def numbers(
 
     Every numpy says the same: older ones only warn of what they cannot read.
     """
-    if not count and not text.strip():
-        values = np.zeros(0, kind)
-    elif kind is np.float64 and (fixed := _fixed_point(text, count)) is not None:
-        return fixed
-    else:
+    lines = Lines(text if text.endswith(b"\n") else text + b"\n")
+    values: NDArray[Any] | None = None
+    if lines.clean:
+        values = decimals(lines.text, lines.words, lines.ends, kind)
+    if values is None:
         with warnings.catch_warnings():
             warnings.simplefilter("error", DeprecationWarning)
             try:
@@ -34,31 +33,6 @@ def numbers(
     if len(values) != count:
         raise ValueError(f"{len(values)} numbers where {count} words are")
     return values
-
-
-def _fixed_point(text: bytes, count: int) -> NDArray[np.float64] | None:
-    """Numbers that all have as many digits after the point, in half the time; None: others.
-
-    Without their points they are whole numbers.  These and the power of ten are exact, so
-    the quotient is rounded once, as numpy rounds what it reads.
-    """
-    if text.translate(None, _FIXED) or text.count(b".") != count:
-        return None
-    data = np.frombuffer(text + b" " * (_DECIMALS + 2), np.uint8)
-    points = np.flatnonzero(data == ord("."))
-    decimals = next((n for n in range(_DECIMALS + 1) if data[points[0] + n + 1] <= _SPACE), 0)
-    if not decimals or not ((data[points + decimals] > _SPACE)
-                            & (data[points + decimals + 1] <= _SPACE)).all():
-        return None
-    if (np.diff(points) <= decimals).any():  # two points in one number
-        return None
-    try:
-        whole = numbers(text.translate(None, b"."), np.int64, count)
-    except ValueError:
-        return None
-    if np.abs(whole).max() >= 2**53:
-        return None
-    return np.asarray(whole / 10.0**decimals, np.float64)
 
 
 def first_numbers(text: bytes, count: int) -> NDArray[np.int64]:

@@ -46,7 +46,8 @@ def contents_error(text: str) -> InputError:
 
 def check_indices(corners: NDArray[np.int64], vertex_count: int) -> None:
     """Raise ``InputError`` where a corner names a vertex that is not there."""
-    if len(corners) and (corners.min() < 0 or corners.max() >= vertex_count):
+    # As numbers without a sign, negative ones are great ones.
+    if len(corners) and corners.view(np.uint64).max() >= vertex_count:
         bad = corners[(corners < 0) | (corners >= vertex_count)][0]
         raise InputError(f"mesh: faces: a face names vertex {bad}, but there are {vertex_count} "
                          "vertices, counted from 0; repair the mesh")

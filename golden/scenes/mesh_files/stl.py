@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...specification.errors import InputError
+from .decimals import decimals, eight_bytes
 from .numbers import numbers
 from .reading import Part, Reading, contents_error
-from .text_lines import SPACE, Lines, line_number, plain_text, ranges, stretch_from
+from .text_lines import SPACE, Lines, line_number, plain_text, ranges, stretch_end
 
 HEADER_BYTES: Final = 84
 _FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -27,6 +28,7 @@ _FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("at
 _VERTEX: Final = (b"vertex", None, None, None)
 FACET_WORDS: Final = (b"facet", b"normal", None, None, None, b"outer", b"loop",
                       *_VERTEX, *_VERTEX, *_VERTEX, b"endloop", b"endfacet")
+_COORDINATES: Final = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 #: From each of these words to the next, vertex numbers (in every second stretch) or other text.
 _BOUNDS: Final = (0, 8, 11, 12, 15, 16, 19)
 
@@ -90,14 +92,13 @@ class _Text:
     def read(self) -> NDArray[np.float64]:
         """The corners of all facets, float64 (f, 3, 3)."""
         found = [np.zeros((0, 3, 3))]
-        start, rest = 0, b""
-        while stretch := stretch_from(self._text, start + len(rest)):
-            # A facet that the stretch cuts is taken with the next one.
-            corners, taken = self._facets(rest + stretch, start)
+        start = end = 0
+        while end < len(self._text):
+            end = stretch_end(self._text, end)
+            corners, taken = self._facets(self._text[start:end], start)
             found.append(corners)
-            whole = len(rest) + len(stretch)
-            rest = (rest + stretch)[taken:]
-            start += whole - len(rest)
+            start += taken  # a facet that the stretch cuts is taken with the next one
+        rest = self._text[start:]
         if rest.strip():
             self._refuse(start + len(rest) - len(rest.lstrip()), "the file ends within a facet")
         if self._open:
@@ -117,17 +118,25 @@ class _Text:
         begin = lines.newlines[:-1][names]
         length = np.diff(lines.newlines)[names]
         lines.text[ranges(begin + 1, length - 1)] = SPACE
-        inside = np.repeat(~names, lines.count)
-        words = lines.words[inside]
+        words, ends = lines.words, lines.ends
+        if names.any():
+            inside = np.repeat(~names, lines.count)
+            words, ends = words[inside], ends[inside]
         whole = len(words) // len(FACET_WORDS)
         facets = words[: whole * len(FACET_WORDS)].reshape(-1, len(FACET_WORDS))
         self._check_words(lines.text, facets, words[whole * len(FACET_WORDS) :], start)
         self._check_solids(words, places, opens, start)
         taken = int(words[facets.size]) - 1 if len(words) > facets.size else len(stretch)
-        bounds = np.append(facets[:, _BOUNDS].reshape(-1), taken + 1)
-        of_vertex = np.tile(np.arange(len(_BOUNDS)) % 2 == 1, whole)
         if not whole:
             return np.zeros((0, 3, 3)), taken
+        if lines.clean:
+            values = decimals(
+                lines.text, facets[:, _COORDINATES].reshape(-1),
+                ends[: facets.size].reshape(facets.shape)[:, _COORDINATES].reshape(-1), np.float64)
+            if values is not None:
+                return values.reshape(-1, 3, 3), taken
+        bounds = np.append(facets[:, _BOUNDS].reshape(-1), taken + 1)
+        of_vertex = np.tile(np.arange(len(_BOUNDS)) % 2 == 1, whole)
         text = lines.text[bounds[0] : taken + 1][np.repeat(of_vertex, np.diff(bounds))]
         try:
             values = numbers(text.tobytes(), np.float64, 9 * whole)
@@ -141,11 +150,15 @@ class _Text:
         """Which lines open or end a solid; where the first word of each is; which open one."""
         filled = np.flatnonzero(lines.count > 0)
         head = lines.words[lines.first[filled]]
-        opens, ends = (_are_words(lines.text, head[:, None], [word])[:, 0]
+        # Few words have an s where these two have one.
+        head_s = [(lines.text[head + i] | 0x20) == ord("s") for i in (0, 3)]
+        candidates = np.flatnonzero(head_s[0] | head_s[1])
+        opens, ends = (_are_words(lines.text, head[candidates, None], [word])[:, 0]
                        for word in (b"solid", b"endsolid"))
+        found = candidates[opens | ends]
         names = np.zeros(len(lines.count), np.bool_)
-        names[filled] = opens | ends
-        return names, head[opens | ends], opens[opens | ends]
+        names[filled[found]] = True
+        return names, head[found], opens[opens | ends]
 
     def _check_solids(
         self,
@@ -194,7 +207,7 @@ class _Text:
     def _bad_number(
         self, text: NDArray[np.uint8], facets: NDArray[np.int64], start: int
     ) -> InputError:
-        corner = facets[:, [8, 9, 10, 12, 13, 14, 16, 17, 18]].reshape(-1)
+        corner = facets[:, _COORDINATES].reshape(-1)
         for place in corner.tolist():
             word = text[place : place + 80].tobytes().split()[0]
             try:
@@ -210,8 +223,7 @@ def _are_words(
     text: NDArray[np.uint8], places: NDArray[np.int64], words: Sequence[bytes]
 ) -> NDArray[np.bool_]:
     """Where ``words``, of up to eight letters, small or in capitals, stand: (n, words)."""
-    windows = np.lib.stride_tricks.sliding_window_view(text, 8)
-    eight = windows[places].view("<u8")[..., 0] | np.uint64(0x2020202020202020)
+    eight = eight_bytes(text, places) | np.uint64(0x2020202020202020)
     sizes = np.array([len(word) for word in words], np.int64)
     keep = np.array([(1 << 8 * len(word)) - 1 for word in words], np.uint64)
     right = np.array([int.from_bytes(word, "little") for word in words], np.uint64)

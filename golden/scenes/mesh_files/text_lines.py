@@ -17,7 +17,7 @@ from .reading import contents_error
 #: Bytes of text taken at a time.
 STRETCH: Final = 1 << 19
 
-NEWLINE, SPACE = 10, 32
+TAB, NEWLINE, CARRIAGE_RETURN, SPACE = 9, 10, 13, 32
 
 #: Blanks behind the lines, so that a few bytes may be looked at from any word on.
 PADDING: Final = 9
@@ -50,11 +50,14 @@ def line_number(text: bytes, position: int) -> int:
     return text.count(b"\n", 0, position) + 1
 
 
+def stretch_end(text: bytes, start: int) -> int:
+    """Where the next whole lines from ``start``, some ``STRETCH`` bytes, end."""
+    return len(text) if start + STRETCH >= len(text) else text.index(b"\n", start + STRETCH) + 1
+
+
 def stretch_from(text: bytes, start: int) -> bytes:
-    """The next whole lines from ``start``, some ``STRETCH`` bytes; empty at the end."""
-    if start + STRETCH >= len(text):
-        return text[start:]
-    return text[start : text.index(b"\n", start + STRETCH) + 1]
+    """The next whole lines from ``start``; empty at the end."""
+    return text[start : stretch_end(text, start)]
 
 
 class Lines:
@@ -64,28 +67,41 @@ class Lines:
                   are ``text[newlines[i] + 1 : newlines[i + 1] + 1]``
     ``newlines``  int64 (lines + 1,)
     ``words``     int64 (w,): where each word starts in ``text``
+    ``ends``      int64 (w,): where the blank behind it stands
     ``first``     int64 (lines,): index in ``words`` of the line's first word
     ``count``     int64 (lines,): how many words the line has
+    ``clean``     no byte between the words but those that a text has there
 
     All bytes up to 32 are blanks.  From ``comment`` (a byte) to the end of its line all
     becomes blank.
     """
 
     def __init__(self, lines: bytes, comment: bytes | None = None) -> None:
-        self.text = np.frombuffer(b"\n" + lines + b" " * PADDING, np.uint8).copy()
-        self.newlines = np.flatnonzero(self.text == NEWLINE)
+        self.text = np.full(1 + len(lines) + PADDING, SPACE, np.uint8)
+        self.text[0] = NEWLINE
+        self.text[1:-PADDING] = np.frombuffer(lines, np.uint8)
         if comment is not None and comment in lines:
             self._blank_comments(comment)
-        blank = self.text <= SPACE
-        self.words = np.flatnonzero(blank[:-1] > blank[1:]) + 1
-        bounds = np.searchsorted(self.words, self.newlines)
+        blanks = np.flatnonzero(self.text[:-PADDING] <= SPACE)
+        kinds = self.text[blanks]
+        self.clean = bool(((kinds == SPACE) | (kinds - TAB <= CARRIAGE_RETURN - TAB)).all())
+        bounds = np.flatnonzero(kinds == NEWLINE)
+        self.newlines = blanks[bounds]
+        filled = blanks[1:] - blanks[:-1] > 1
+        if filled.all():
+            self.words, self.ends = blanks[:-1] + 1, blanks[1:]
+        else:  # some blanks have no word behind them
+            before = np.flatnonzero(filled)
+            self.words, self.ends = blanks[before] + 1, blanks[before + 1]
+            bounds = np.append(0, np.cumsum(filled))[bounds]
         self.first = bounds[:-1]
         self.count = np.diff(bounds)
 
     def _blank_comments(self, comment: bytes) -> None:
+        newlines = np.flatnonzero(self.text == NEWLINE)
         marks = np.flatnonzero(self.text == comment[0])
-        line, first = np.unique(np.searchsorted(self.newlines, marks), return_index=True)
-        self.text[ranges(marks[first], self.newlines[line] - marks[first])] = SPACE
+        line, first = np.unique(np.searchsorted(newlines, marks), return_index=True)
+        self.text[ranges(marks[first], newlines[line] - marks[first])] = SPACE
 
     def bytes_of(self, chosen: NDArray[np.bool_]) -> bytes:
         """The text of some lines, ``chosen`` bool (lines,)."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....specification.errors import InputError
+from ..decimals import decimals
 from ..numbers import numbers
 from ..reading import contents_error
 from ..text_lines import Lines, line_number, ranges, stretch_from
@@ -59,11 +60,7 @@ def _split(
 ) -> Rows:
     """Some lines of text: the words of each, shared out among the properties."""
     counts = lines.count[chosen]
-    try:
-        values = numbers(lines.bytes_of(chosen), np.int64 if whole else np.float64,
-                         int(counts.sum()))
-    except ValueError:
-        raise _bad_line(text, start, lines, chosen, element, whole) from None
+    values = _numbers(text, start, lines, chosen, element, whole)
     if (counts == counts[0]).all():
         table = _table(element, values.reshape(len(counts), -1))
         if table is not None:
@@ -92,6 +89,22 @@ def _split(
     return rows
 
 
+def _numbers(
+    text: bytes, start: int, lines: Lines, chosen: NDArray[np.bool_], element: Element, whole: bool
+) -> NDArray[Any]:
+    """All numbers of the chosen lines, which are the first ones that hold any."""
+    kind = np.int64 if whole else np.float64
+    count = int(lines.count[chosen].sum())
+    if lines.clean:
+        values = decimals(lines.text, lines.words[:count], lines.ends[:count], kind)
+        if values is not None:
+            return values
+    try:
+        return numbers(lines.bytes_of(chosen), kind, count)
+    except ValueError:
+        raise _bad_line(text, start, lines, chosen, element, whole) from None
+
+
 def _table(element: Element, values: NDArray[Any]) -> Rows | None:
     """Rows (rows, numbers) of which all have lists of one length; None where they have not."""
     rows, at = Rows(), 0
@@ -106,8 +119,7 @@ def _table(element: Element, values: NDArray[Any]) -> Rows | None:
         length = int(first[0])
         if (first != length).any() or not 0 <= length <= values.shape[1] - at:
             return None
-        rows.lists[p.name] = (values[:, at : at + length].reshape(-1),
-                              np.full(len(values), length))
+        rows.lists[p.name] = values[:, at : at + length], np.full(len(values), length)
         at += length
     return rows if at == values.shape[1] else None
 
@@ -262,7 +274,7 @@ def _joined(element: Element, pieces: list[Rows]) -> Rows:
             rows.scalars[p.name] = np.concatenate([none, *(x.scalars[p.name] for x in pieces)])
         else:
             rows.lists[p.name] = (
-                np.concatenate([none, *(x.lists[p.name][0] for x in pieces)]),
+                np.concatenate([none, *(x.lists[p.name][0] for x in pieces)], axis=None),
                 np.concatenate([np.zeros(0, np.int64), *(x.lists[p.name][1] for x in pieces)]),
             )
     return rows

@@ -32,7 +32,7 @@ def test_any_spelling():
 
 @pytest.mark.parametrize("text", [
     "1.2.3 4", "1.25 1.2.5", "1.25 2. 5", "1-2 3.5.", "1.5 x", "1.5 2,5", "1_0 2", "1.5 0x10",
-    "1.5", "1.5 2.5 3.5", "1.5 -", ". 1", "1.5 2.5f", "",
+    "1.5 \x01 2.5", "1.5\x012.5", "1.5", "1.5 2.5 3.5", "1.5 -", ". 1", "1.5 2.5f", "",
 ])
 def test_what_is_not_two_numbers(text):
     with pytest.raises(ValueError):

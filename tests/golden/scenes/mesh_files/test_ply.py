@@ -137,6 +137,7 @@ LINE = PLAIN.count(b"\n", 0, PLAIN.index(b"end_header")) + 2  # that of the firs
     (PLAIN.replace(b"3 0 2 1", b"-1 0 2 1"), f"contents: line {LINE + 4}: 4 numbers do not make"),
     (PLAIN.replace(b"3 0 2 1", b"3 0 2 x"), f"contents: line {LINE + 4}: cannot read '3 0 2 x'"),
     (PLAIN.replace(b"2.0 0.0 0.0", b"2.0 0.0 0,0"), f"contents: line {LINE + 1}: cannot read"),
+    (PLAIN.replace(b"3 0 2 1", b"3 0 2\x011"), f"contents: line {LINE + 4}: cannot read"),
     (PLAIN.replace(b"3 0 2 1", b"3 0 2 4"), "faces: a face names vertex 4, but there are 4"),
     (PLAIN.replace(b"3 0 2 1", b"3 0 2 -1"), "faces: a face names vertex -1, but"),
     (PLAIN.replace(b"property float y", b"property float t"), "contents: vertices have no prop"),

@@ -79,6 +79,7 @@ def swapped(old, new, count=1):
     (swapped("2.000000e+00", "x2.0"), "contents: line 6: 'x2.0' is not a number"),
     (swapped("2.000000e+00", "2,0"), "contents: line 6: '2,0' is not a number"),
     (swapped("2.000000e+00", "1.0-1.0"), "contents: line 6: '1.0-1.0' is not a number"),
+    (swapped("2.000000e+00 ", "2.000000e+00\x01"), "contents: line 6: '2.000000e+00\\x01"),
     (swapped("2.000000e+00 ", ""), "contents: line 8: 'endfacet' where 'endloop' is due"),
     (swapped("outer loop", "outer ring"), "contents: line 3: 'ring' where 'loop' is due"),
     (swapped(" endfacet\n", ""), "contents: line 8: 'facet' where 'endfacet' is due"),
