@@ -65,9 +65,12 @@ def decimals(
 
 
 def _whole_numbers(text: Bytes, starts: Places, ends: Places) -> Places:
-    first, negative = _signs(text, starts)
-    _check(first is starts or (ends > first).all())
-    return _signed(_digits(text, first, ends), negative)
+    try:
+        return _digits(text, starts, ends)
+    except _NotPlainError:
+        first, negative = _signs(text, starts)
+        _check((ends > first).all())
+        return _signed(_digits(text, first, ends), negative)
 
 
 def _floats(text: Bytes, starts: Places, ends: Places) -> NDArray[np.float64]:
