@@ -114,14 +114,15 @@ class BitMemory(wiring.Component):
             m.d.sync += [
                 place.eq(read.addr),
                 bit.eq(self.bit),
-                value.eq(self.value),
+                value.eq(self.value & self.change),
                 takes.eq(~self.change),
                 follows.eq(self.busy & (place == self.place)),
             ]
         m.d.comb += [
-            mask.eq(1 << bit),
+            # All bits of a word that is taken become 0, or one bit whatever it is changed to.
+            mask.eq((1 << bit) | takes.replicate(self.word_bits)),
             before.eq(Mux(follows, written, read.data)),
-            after.eq(Mux(takes, 0, Mux(value, before | mask, before & ~mask))),
+            after.eq(Mux(value, before | mask, before & ~mask)),
             write.en.eq(self.busy),
             write.addr.eq(place),
             write.data.eq(after),

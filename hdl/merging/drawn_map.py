@@ -61,8 +61,8 @@ class DrawnMap(wiring.Component):
     Raises ``ValueError`` for a number out of range.
     """
 
-    latency = 7
-    overhead = 7
+    latency = 9
+    overhead = 9
     settling = 4
 
     def __init__(self, *, words: int, word_bits: int = WORD_BITS):

@@ -1,5 +1,9 @@
 """Which bits of words are set, one after the other."""
 
+from collections.abc import Iterable
+from functools import reduce
+from operator import or_
+
 from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -12,8 +16,10 @@ __all__ = ["SetBits"]
 class SetBits(wiring.Component):
     """Numbers all set bits of each word that comes, from the lowest to the highest.
 
-    Two stages: one takes the lowest bit off the word, the other says which one it was.  The next
-    word comes as the last bit of this one goes.
+    A word is looked at in groups of bits, as many as a group has bits or half as many, so that
+    the lowest of either is found in little logic.  One stage takes from a word the lowest group
+    that has bits, the next one takes from a group the lowest bit, and the last one holds
+    its number.  Each is given what comes next as the last that it has goes.
 
     Latency: ``latency`` clocks from a word to its first bit.  Throughput: a bit a clock; a word
     without any takes a clock.
@@ -35,7 +41,7 @@ class SetBits(wiring.Component):
     Raises ``ValueError`` for a number out of range.
     """
 
-    latency = 2
+    latency = 3
 
     def __init__(self, *, words: int, word_bits: int):
         if words < 1:
@@ -52,29 +58,60 @@ class SetBits(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         words, numbers = self.words_in, self.numbers
-        left = Signal.like(words.payload)
-        lowest = Signal.like(words.payload)  # with this one bit
-        others = Signal(self.word_bits)
-        moves = Signal()
+        group_count = 1 << (self.word_bits - 1).bit_length() // 2
+        group_bits = self.word_bits // group_count
+        word = Signal.like(words.payload)
+        groups = Signal(group_count)  # of the word that are left
+        bits = Signal(group_bits)  # of the group that are left
+        group = Signal(range(self.words * group_count))  # its number
+        lowest_group, other_groups = _lowest_and_others(groups)
+        lowest_bit, other_bits = _lowest_and_others(bits)
 
+        moves, next_group = Signal(), Signal()
         m.d.comb += [
-            others.eq(left.bits & (left.bits - 1)),
             moves.eq(~numbers.valid | numbers.ready),
-            words.ready.eq(moves & (others == 0)),
-            self.empty.eq(~left.bits.any() & ~numbers.valid),
+            next_group.eq(moves & ~other_bits.any()),
+            words.ready.eq(next_group & ~other_groups.any()),
+            self.empty.eq(~(groups.any() | bits.any() | numbers.valid)),
         ]
         with m.If(moves):
             m.d.sync += [
-                numbers.valid.eq(left.bits.any()),
-                lowest.bits.eq(left.bits & ~others),
-                lowest.place.eq(left.place),
-                left.bits.eq(others),
+                numbers.valid.eq(bits.any()),
+                numbers.payload.eq(Cat(_number(lowest_bit), group)),
+                bits.eq(other_bits),
+            ]
+        with m.If(next_group):
+            m.d.sync += [
+                # None where the word has no group left.
+                bits.eq(_any_of(part & chosen.replicate(group_bits) for part, chosen
+                                in zip(_parts(word.bits, group_bits), lowest_group, strict=True))),
+                group.eq(Cat(_number(lowest_group), word.place)),
+                groups.eq(other_groups),
             ]
         with m.If(words.valid & words.ready):
-            m.d.sync += left.eq(words.payload)
-
-        bits = range(self.word_bits)
-        bit = Cat(Cat(lowest.bits[place] for place in bits if place >> digit & 1).any()
-                  for digit in range((self.word_bits - 1).bit_length()))
-        m.d.comb += numbers.payload.eq(Cat(bit, lowest.place))
+            m.d.sync += [
+                word.eq(words.payload),
+                groups.eq(Cat(part.any() for part in _parts(words.payload.bits, group_bits))),
+            ]
         return m
+
+
+def _parts(value: Value, width: int) -> list[Value]:
+    return [value[begin:begin + width] for begin in range(0, len(value), width)]
+
+
+def _any_of(values: Iterable[Value]) -> Value:
+    return reduce(or_, values)
+
+
+def _lowest_and_others(bits: Value) -> tuple[Value, Value]:
+    """The lowest bit that is set, alone in its place, and all others; no bit, where none is set."""
+    lower = Cat(bits[:place].any() for place in range(len(bits)))
+    return bits & ~lower, bits & lower
+
+
+def _number(lone_bit: Value) -> Value:
+    """In which place the only bit is that is set."""
+    places = range(len(lone_bit))
+    return Cat(Cat(lone_bit[place] for place in places if place >> digit & 1).any()
+               for digit in range((len(lone_bit) - 1).bit_length()))
