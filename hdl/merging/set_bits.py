@@ -1,6 +1,5 @@
 """Which bits of words are set, one after the other."""
 
-from collections.abc import Iterable
 from functools import reduce
 from operator import or_
 
@@ -18,8 +17,8 @@ class SetBits(wiring.Component):
 
     A word is looked at in groups of bits, as many as a group has bits or half as many, so that
     the lowest of either is found in little logic.  One stage takes from a word the lowest group
-    that has bits, the next one takes from a group the lowest bit, and the last one holds
-    its number.  Each is given what comes next as the last that it has goes.
+    that has bits, the next one from a group the lowest bit, and a third one holds its number.
+    A stage is given more in the clock in which its last one goes.
 
     Latency: ``latency`` clocks from a word to its first bit.  Throughput: a bit a clock; a word
     without any takes a clock.
@@ -83,8 +82,9 @@ class SetBits(wiring.Component):
         with m.If(next_group):
             m.d.sync += [
                 # None where the word has no group left.
-                bits.eq(_any_of(part & chosen.replicate(group_bits) for part, chosen
-                                in zip(_parts(word.bits, group_bits), lowest_group, strict=True))),
+                bits.eq(reduce(or_, (
+                    part & chosen.replicate(group_bits) for part, chosen
+                    in zip(_parts(word.bits, group_bits), lowest_group, strict=True)))),
                 group.eq(Cat(_number(lowest_group), word.place)),
                 groups.eq(other_groups),
             ]
@@ -98,10 +98,6 @@ class SetBits(wiring.Component):
 
 def _parts(value: Value, width: int) -> list[Value]:
     return [value[begin:begin + width] for begin in range(0, len(value), width)]
-
-
-def _any_of(values: Iterable[Value]) -> Value:
-    return reduce(or_, values)
 
 
 def _lowest_and_others(bits: Value) -> tuple[Value, Value]:

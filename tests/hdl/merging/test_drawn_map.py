@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from amaranth.hdl import ResetInserter, Signal
+from amaranth.hdl import Fragment, ResetInserter, Signal
 from hdl_bench.accesses import careless_memory
 from hdl_bench.bench import Agent, rejects, simulate
 from hdl_bench.streams import Sink, no_pause, pauses
@@ -247,6 +247,12 @@ def test_a_picture_of_a_node(record_property):
     assert sink.clocks[-404:] == list(range(sink.clocks[-404], sink.clocks[-404] + 404))
     record_property("measured", f"drawn map of 16384 words: {last} clocks to list the last one "
                                 f"alone, {none} to list none")
+
+
+def test_the_largest_memory_unit():
+    dut = DrawnMap(words=1 << 20)
+    Fragment.get(dut, None)
+    assert (dut.word_bits, dut.map_words, dut.summary_words) == (64, 16_384, 256)
 
 
 @pytest.mark.parametrize(("name", "wrong"), [
