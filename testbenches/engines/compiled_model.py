@@ -17,7 +17,7 @@ from pathlib import Path
 
 from ...hdl.machine import BOARDS
 from ..support.cache import cached, content_hash
-from .verilator_tool import VerilatorTool
+from .verilator_tool import ToolMissingError, VerilatorTool
 
 #: Statements at which a function is cut; fewer cost speed for the calls, more leave fewer pieces
 #: that are the same.
@@ -70,8 +70,9 @@ def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -
     runtime = _runtime(tool)
     tool.compile([[*(_ONCE if name == "once" else _OFTEN), *include, "-c", f"{name}.cc"]
                   for name in units], work)
-    tool.compile([["-o", "../machine", *(f"{name}.o" for name in units), *runtime, "-lpthread"]],
-                 work)
+    _check_made(tool, work, _objects(units))
+    tool.compile([["-o", "../machine", *_objects(units), *runtime, "-lpthread"]], work)
+    _check_made(tool, folder, ["machine"])
     shutil.rmtree(work)
 
 
@@ -97,6 +98,19 @@ def _runtime(tool: VerilatorTool) -> list[str]:
         tool.compile([[*_RUNTIME, *_include(tool), "-c",
                        str(tool.root / "include" / f"{part}.cpp"), "-o", f"{part}.o"]
                       for part in _RUNTIME_PARTS], folder)
+        _check_made(tool, folder, _objects(_RUNTIME_PARTS))
 
-    folder, _ = cached(content_hash(["runtime", tool.version(), tool.compiler, *_RUNTIME]), build)
-    return [str(folder / f"{part}.o") for part in _RUNTIME_PARTS]
+    folder, _ = cached(content_hash(["runtime", *tool.versions(), *_RUNTIME]), build)
+    return [str(folder / name) for name in _objects(_RUNTIME_PARTS)]
+
+
+def _objects(names: Iterable[str]) -> list[str]:
+    return [f"{name}.o" for name in names]
+
+
+def _check_made(tool: VerilatorTool, folder: Path, names: Iterable[str]) -> None:
+    """What is not there must not be kept as if it were."""
+    for name in names:
+        if not (folder / name).exists():
+            raise ToolMissingError(f"{' '.join(tool.compiler)} made no {name}: is it a C++ "
+                                   "compiler?")

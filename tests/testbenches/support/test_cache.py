@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -11,6 +12,7 @@ import pytest
 from click.testing import CliRunner
 from refusals import assert_one_line
 
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.support import cache, measurement_cache
 
@@ -197,3 +199,49 @@ def test_a_relative_name_is_meant_from_here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv(cache.ENVIRONMENT_VARIABLE, "here")
     assert cache.cache_folder() == tmp_path / "here"
+
+
+def test_a_damaged_model_that_cannot_be_moved_leaves_no_folders(folder, temporary, monkeypatch):
+    """As where it is another user's: the model is then a temporary one, each time."""
+    made, _ = cache.cached(KEY, model)
+    (made / "checksum").unlink()
+    rename = Path.rename
+
+    def refuses(path, target):
+        if path == made:
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", refuses)
+    for _ in range(2):
+        elsewhere, fresh = cache.cached(KEY, model)
+        assert fresh and folder not in elsewhere.parents
+    assert [path.name for path in folder.iterdir() if path.is_dir()] == [KEY]
+
+
+def test_a_cache_that_is_cleared_meanwhile(folder, temporary):
+    """Whoever builds finds the folder gone, whatever that looks like: it is built elsewhere."""
+    def build(work):
+        if folder in work.parents:
+            cache.clear_cache()
+            raise RuntimeError("the compiler says something odd")
+        model(work)
+
+    made, fresh = cache.cached(KEY, build)
+    assert fresh and folder not in made.parents
+    assert not folder.exists() or not [path for path in folder.iterdir() if path.is_dir()]
+
+
+def test_a_fault_of_the_build_is_its_own(folder):
+    with pytest.raises(ZeroDivisionError):
+        cache.cached(KEY, lambda work: 1 / 0)
+
+
+def test_no_home_folder(monkeypatch):
+    def no_home(name):
+        raise RuntimeError("could not determine the home directory")
+
+    monkeypatch.delenv(cache.ENVIRONMENT_VARIABLE, raising=False)
+    monkeypatch.setattr(cache.platformdirs, "user_cache_dir", no_home)
+    with pytest.raises(InputError, match="^no home folder .* name a folder in CARDCAGE_CACHE$"):
+        cache.cached(KEY, model)
