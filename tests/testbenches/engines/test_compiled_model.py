@@ -46,7 +46,7 @@ class Recorder(VerilatorTool):
                 if part.endswith(".cc"):  # all that a unit names is there
                     for line in (folder / part).read_text().splitlines():
                         assert (folder / line.split('"')[1]).exists()
-                (folder / part.replace(".cc", ".o")).touch()
+                    (folder / part).with_suffix(".o").touch()
             if "-o" in unit:
                 (folder / unit[unit.index("-o") + 1]).touch()
 

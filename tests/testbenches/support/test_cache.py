@@ -243,5 +243,5 @@ def test_no_home_folder(monkeypatch):
 
     monkeypatch.delenv(cache.ENVIRONMENT_VARIABLE, raising=False)
     monkeypatch.setattr(cache.platformdirs, "user_cache_dir", no_home)
-    with pytest.raises(InputError, match="^no home folder .* name a folder in CARDCAGE_CACHE$"):
+    with pytest.raises(InputError, match=r"^no home folder .* name a folder in CARDCAGE_CACHE$"):
         cache.cached(KEY, model)
