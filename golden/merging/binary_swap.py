@@ -27,7 +27,7 @@ def merge_binary_swap(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Tra
     do whatever was drawn where.
     """
     kept, sends = _fold([_each(picture, _flat) for picture in pictures])
-    step = len(sends) and 1
+    step = 1 if sends else 0
     parts = [slice(0, None, 1)] * len(kept)
     for distance in (1 << bit for bit in range(len(kept).bit_length() - 1)):
         swapped = []
@@ -45,7 +45,7 @@ def merge_binary_swap(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Tra
     height, width = pictures[0].order.shape
     whole = _joined(parts, [picture for _, picture in kept])
     return (_each(whole, lambda array: array.reshape(height, width, *array.shape[1:])),
-            Traffic.of(len(pictures), sends))
+            Traffic(len(pictures), sends))
 
 
 def _fold(pictures: list[NodePicture]) -> tuple[list[tuple[int, NodePicture]], list[Send]]:

@@ -16,5 +16,5 @@ def merge_chain(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Traffic]:
     """
     pixels = pictures[0].picture.depth.size
     links = range(len(pictures) - 1)
-    return merged(pictures), Traffic.of(
-        len(pictures), (Send(0, node, node + 1, pixels) for node in links))
+    return merged(pictures), Traffic(
+        len(pictures), [Send(0, node, node + 1, pixels) for node in links])

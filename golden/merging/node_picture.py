@@ -71,7 +71,7 @@ def node_pictures(display_list: DisplayList, shares: Shares, *, order_bits: int 
     ``order_bits``  of the order that a pixel carries, by default as many as number the rounds;
                     0 carries none, which is right where no two nodes tie
     """
-    bits = shares.order_bits if order_bits is None else order_bits
+    greatest = (1 << (shares.order_bits if order_bits is None else order_bits)) - 1
     shading = shading_for(display_list, shading)
     pictures = []
     for node in range(shares.nodes):
@@ -79,14 +79,13 @@ def node_pictures(display_list: DisplayList, shares: Shares, *, order_bits: int 
         part = replace(display_list, position=display_list.position[own],
                        depth=display_list.depth[own], color=display_list.color[own])
         drawn = draw(part, shading=shading, x_shift=x_shift, y_shift=y_shift)
-        nothing = drawn.winner == NO_PRIMITIVE
-        numbers = own if len(own) else np.zeros(1, np.int64)
-        winner = numbers[np.where(nothing, 0, drawn.winner)]
-        rounds = winner // (shares.packet_triangles * shares.nodes)
-        greatest = (1 << bits) - 1
-        pictures.append(NodePicture(
-            replace(drawn, winner=np.where(nothing, NO_PRIMITIVE, winner).astype(np.int32)),
-            np.where(nothing, greatest, rounds & greatest)))
+        seen = drawn.winner != NO_PRIMITIVE
+        primitive = own[drawn.winner[seen]]
+        winner = drawn.winner.copy()
+        winner[seen] = primitive
+        order = np.full(winner.shape, greatest, np.int64)
+        order[seen] &= shares.round[primitive]
+        pictures.append(NodePicture(replace(drawn, winner=winner), order))
     return pictures
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,11 +28,7 @@ class Traffic:
     """
 
     nodes: int
-    sends: tuple[Send, ...]
-
-    @classmethod
-    def of(cls, nodes: int, sends: Iterable[Send]) -> Traffic:
-        return cls(nodes, tuple(sends))
+    sends: Sequence[Send]
 
     @property
     def pixels(self) -> int:

@@ -30,4 +30,4 @@ def merge_tree(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Traffic]:
     for step, sender, receiver in tree_pairs(len(pictures)):
         sends.append(Send(step, sender, receiver, int(np.count_nonzero(kept[sender].drawn))))
         kept[receiver] = nearer(kept[receiver], kept[sender])
-    return kept[0], Traffic.of(len(pictures), sends)
+    return kept[0], Traffic(len(pictures), sends)

@@ -4,11 +4,14 @@ from amaranth.hdl import *
 from amaranth.lib import data, memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-__all__ = ["BitMemory", "check_word_bits", "word_layout"]
+__all__ = ["BitMemory", "check_sizes", "word_layout"]
 
 
-def check_word_bits(word_bits: int) -> None:
-    """Raise ``ValueError`` unless a word's bits are numbered by whole bits of an address."""
+def check_sizes(*, words: int, word_bits: int) -> None:
+    """Raise ``ValueError`` unless there are words, whose bits are numbered by whole bits of an
+    address."""
+    if words < 1:
+        raise ValueError(f"words must be positive, not {words!r}")
     if word_bits < 2 or word_bits & (word_bits - 1):
         raise ValueError(f"word_bits must be a power of two from 2, not {word_bits!r}")
 
@@ -67,9 +70,7 @@ class BitMemory(wiring.Component):
     latency = 2
 
     def __init__(self, *, words: int, word_bits: int):
-        if words < 1:
-            raise ValueError(f"words must be positive, not {words!r}")
-        check_word_bits(word_bits)
+        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
         # No read that is of use meets a write.

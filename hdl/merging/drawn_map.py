@@ -5,7 +5,7 @@ from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MAXIMUM_WORDS
-from .bit_memory import BitMemory, check_word_bits
+from .bit_memory import BitMemory, check_sizes
 from .set_bits import SetBits
 
 __all__ = ["WORD_BITS", "DrawnMap"]
@@ -68,7 +68,7 @@ class DrawnMap(wiring.Component):
     def __init__(self, *, words: int, word_bits: int = WORD_BITS):
         if not 1 <= words <= MAXIMUM_WORDS:
             raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
-        check_word_bits(word_bits)
+        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
         self.map_words = -(-words // word_bits)

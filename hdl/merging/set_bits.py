@@ -7,7 +7,7 @@ from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from .bit_memory import check_word_bits, word_layout
+from .bit_memory import check_sizes, word_layout
 
 __all__ = ["SetBits"]
 
@@ -43,9 +43,7 @@ class SetBits(wiring.Component):
     latency = 3
 
     def __init__(self, *, words: int, word_bits: int):
-        if words < 1:
-            raise ValueError(f"words must be positive, not {words!r}")
-        check_word_bits(word_bits)
+        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
         super().__init__({

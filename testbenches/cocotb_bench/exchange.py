@@ -121,7 +121,7 @@ def configuration_of(values: dict[str, Any]) -> MachineConfiguration:
         if name not in values:
             raise InputError(f"configuration: {name}: missing")
     known = {field.name for field in fields(MachineConfiguration)}
-    for name in values.keys() - known - FOLLOWING.keys():
+    for name in sorted(values.keys() - known - FOLLOWING.keys()):
         raise InputError(f"configuration: {name}: unknown to this version of Cardcage; export the "
                          "machine again")
     values = {name: value for name, value in values.items() if name in known}

@@ -139,6 +139,13 @@ def test_lanes_catch_up_while_nothing_is_found():
     np.testing.assert_allclose(apart[1], [32, 32, 32], rtol=0.02)
 
 
+def walked(configuration, listed):
+    """The spans of a list, the elements' pipeline, and what each of two elements walks of them."""
+    _, (spans,) = spans_of(configuration, listed, 1 << 20)
+    pipeline = Pipeline()
+    return spans, pipeline, entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)
+
+
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("pause", [0, 60])
 def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
@@ -146,9 +153,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
     pick = np.random.default_rng(seed)
     listed = scene(30 + seed, n=80, size=int(pick.choice((4, 12, 25))))
     configuration = wide_machine(listed, cards="PMPMMM", clocks_per_pixel=256, memory_ports=2)
-    _, (spans,) = spans_of(configuration, listed, 1 << 20)
-    pipeline = Pipeline()
-    entries = entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)
+    spans, pipeline, entries = walked(configuration, listed)
 
     class Hidden:
         """No writes, all in one lane."""
@@ -177,9 +182,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
 def test_each_row_costs_its_span_and_an_end_without_one_nothing():
     listed = scene(5, n=60, size=6)
     configuration = wide_machine(listed, cards="PMPMMM", block=1, clocks_per_pixel=256)
-    _, (spans,) = spans_of(configuration, listed, 1 << 20)
-    pipeline = Pipeline()
-    entries = entries_of(organisation_of(configuration).blocks, 2, spans, pipeline)
+    spans, pipeline, entries = walked(configuration, listed)
 
     class Numbers:
         """Each span takes as many accesses as its number says, of every kind."""
