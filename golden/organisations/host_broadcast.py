@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ..specification import card_order
+from ..specification.commands import Fault
 from ..specification.interlace import Interlace
-from .organisation import Coordinate, Domain, ElementBlock, Int64, Organisation, Resolution
+from .organisation import Bool, Coordinate, Domain, ElementBlock, Int64, Organisation, Resolution
 
 
 class HostBroadcast(Organisation):
@@ -28,10 +30,11 @@ class HostBroadcast(Organisation):
         return Resolution(interlace.width, interlace.height, interlace.x_shift, interlace.y_shift)
 
     @property
-    def refused(self) -> bool:
+    def fault(self) -> Fault | None:
         configuration = self.configuration
         unequal = any(domain.units != 1 << configuration.share_bits for domain in self.domains)
-        return configuration.units.bit_count() != 1 or (configuration.block > 1 and unequal)
+        wrong = configuration.units.bit_count() != 1 or (configuration.block > 1 and unequal)
+        return Fault.UNITS_UNSUPPORTED if wrong else None
 
     @cached_property
     def domains(self) -> tuple[Domain, ...]:
@@ -39,19 +42,12 @@ class HostBroadcast(Organisation):
                      for first, units in card_order.domains(self.configuration.cards))
 
     @property
-    def nodes(self) -> int:
-        return 1
-
-    @property
-    def units(self) -> int:
-        return self.configuration.units
+    def node_units(self) -> tuple[int, ...]:
+        return (self.configuration.units,)
 
     @property
     def words(self) -> int:
         return self._interlace.words
-
-    def node_of(self, primitive: Int64) -> Int64:
-        return np.zeros_like(primitive)
 
     def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
         return self._interlace.unit(x, y)
@@ -62,15 +58,33 @@ class HostBroadcast(Organisation):
     def pixel(self, unit: Coordinate, word: Coordinate) -> tuple[Coordinate, Coordinate]:
         return self._interlace.pixel(unit, word)
 
-    def shown_by(self, x: Int64, y: Int64) -> Int64:
-        return np.zeros_like(x)
+    def is_scanned(self, node: int) -> bool:
+        return True
 
     @cached_property
     def read_back(self) -> tuple[Int64, Int64]:
-        """Unit after unit of every domain, addresses ascending."""
+        """The units and the words whose depths ``READ_DEPTH`` sends: unit after unit of every
+        domain, addresses ascending."""
         units = np.concatenate([np.arange(first, first + count)
                                 for _, first, count in self.domains])
         return units.repeat(self.words), np.tile(np.arange(self.words), len(units))
+
+    @property
+    def depths_read_back(self) -> int:
+        return len(self.read_back[0])
+
+    def depth_image(self, depths: Any) -> Int64:
+        width, height, *_ = self.resolution
+        x, y = self.pixel(*self.read_back)
+        inside = (x < width) & (y < height)
+        image = np.full((height, width), -1, np.int64)
+        image[y[inside], x[inside]] = np.asarray(depths, np.int64)[inside]
+        return image
+
+    @property
+    def owned_pixels(self) -> Bool:
+        y, x = np.mgrid[:self.resolution.height, :self.resolution.width]
+        return np.asarray(self.owners[0, self.unit(x, y)] >= 0)
 
     @property
     def blocks(self) -> tuple[ElementBlock, ...]:

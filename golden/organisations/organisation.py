@@ -14,7 +14,9 @@ from typing import Any, ClassVar, NamedTuple, TypedDict, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..specification.commands import Fault
 from ..specification.configuration import MachineConfiguration
+from .shares import Shares
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
@@ -84,12 +86,15 @@ class ElementBlock(NamedTuple):
 class Organisation(ABC):
     """One cage: who draws primitive i, where a pixel lies, who shows it, what is read back.
 
-    Every node has the same number of units, and keeps pixel (x, y) in the unit ``unit(x, y)`` at
-    the word ``word(x, y)``, x and y at the resolution the cage draws at.
+    A node of ``units`` memory units keeps pixel (x, y) in the unit ``unit(x, y)`` at the word
+    ``word(x, y)``, x and y at the resolution the cage draws at.
     """
 
     #: What reports and ``machine.json`` call it.
     name: ClassVar[str]
+
+    #: Merge cards end nodes, which the cage reports at boot, and whose pictures it merges.
+    merges: ClassVar[bool] = False
 
     def __init__(self, configuration: MachineConfiguration) -> None:
         self.configuration = configuration
@@ -101,19 +106,14 @@ class Organisation(ABC):
 
     @property
     @abstractmethod
-    def refused(self) -> bool:
-        """The cage boots, answers ``UNITS_UNSUPPORTED`` and draws nothing; of what follows only
-        ``domains`` can be asked."""
+    def fault(self) -> Fault | None:
+        """Why the cage is refused: it boots, answers this and draws nothing; of what follows only
+        ``domains`` and ``node_units`` can be asked.  None where it draws."""
 
     @property
     @abstractmethod
-    def nodes(self) -> int:
-        """How many nodes there are; each keeps a picture of its own."""
-
-    @property
-    @abstractmethod
-    def units(self) -> int:
-        """Memory units of each node."""
+    def node_units(self) -> tuple[int, ...]:
+        """Memory units of each node; a node keeps a picture of its own."""
 
     @property
     @abstractmethod
@@ -125,10 +125,6 @@ class Organisation(ABC):
     def domains(self) -> tuple[Domain, ...]:
         """The domain of each processing element, left to right; in this order the elements
         report them at boot and answer ``READ_COUNTERS``."""
-
-    @abstractmethod
-    def node_of(self, primitive: Int64) -> Int64:
-        """Which node draws each primitive of a display list."""
 
     @abstractmethod
     def unit(self, x: Coordinate, y: Coordinate) -> Coordinate:
@@ -144,13 +140,24 @@ class Organisation(ABC):
         the picture."""
 
     @abstractmethod
-    def shown_by(self, x: Int64, y: Int64) -> Int64:
-        """The node whose memory the video output shows at each pixel."""
+    def is_scanned(self, node: int) -> bool:
+        """The video output reads the memory of that node."""
 
     @property
     @abstractmethod
-    def read_back(self) -> tuple[Int64, Int64]:
-        """The units and the words whose depths ``READ_DEPTH`` sends, in that order."""
+    def depths_read_back(self) -> int:
+        """Responses to ``READ_DEPTH``."""
+
+    @abstractmethod
+    def depth_image(self, depths: Any) -> Int64:
+        """Depths in the order of the read-back, put where their pixels are: int64 (height, width),
+        -1 where the pixel is not what all processing elements together have drawn."""
+
+    @property
+    @abstractmethod
+    def owned_pixels(self) -> Bool:
+        """bool (height, width): pixels that are what all processing elements together have
+        drawn; none of their memory units is nobody's."""
 
     @property
     @abstractmethod
@@ -175,39 +182,36 @@ class Organisation(ABC):
 
     # What follows from these.
 
-    @property
-    def owned_units(self) -> int:
-        """Memory units that some processing element draws into."""
-        return sum(domain.units for domain in self.domains)
-
     @cached_property
     def owners(self) -> Int64:
         """int64 (nodes, units): the processing element that draws into each unit, or -1."""
-        owners = np.full((self.nodes, self.units), -1)
+        owners = np.full((self.nodes, max(self.node_units)), -1)
         for element, (node, first, units) in enumerate(self.domains):
             owners[node, first:first + units] = element
         return owners
 
     @property
-    def owned_pixels(self) -> Bool:
-        """bool (height, width): pixels that some processing element draws where they are shown."""
-        y, x = np.mgrid[:self.resolution.height, :self.resolution.width]
-        return np.asarray(self.owners[self.shown_by(x, y), self.unit(x, y)] >= 0)
+    def refused(self) -> bool:
+        """The cage boots, but draws nothing."""
+        return self.fault is not None
 
     @property
-    def depths_read_back(self) -> int:
-        """Responses to ``READ_DEPTH``."""
-        return len(self.read_back[0])
+    def nodes(self) -> int:
+        return len(self.node_units)
 
-    def depth_image(self, depths: Any) -> Int64:
-        """Depths in the order of the read-back, put where their pixels are: int64 (height, width),
-        -1 where nothing was read."""
-        width, height, *_ = self.resolution
-        x, y = self.pixel(*self.read_back)
-        inside = (x < width) & (y < height)
-        image = np.full((height, width), -1, np.int64)
-        image[y[inside], x[inside]] = np.asarray(depths, np.int64)[inside]
-        return image
+    @property
+    def units(self) -> int:
+        """Memory units of a node, where all have as many."""
+        return self.node_units[0]
+
+    def shares(self, triangles: int) -> Shares:
+        """Which node draws each triangle of a display list of so many."""
+        return Shares(self.nodes, triangles, self.configuration.packet)
+
+    @property
+    def owned_units(self) -> int:
+        """Memory units that some processing element draws into."""
+        return sum(domain.units for domain in self.domains)
 
     def video(self, picture: NDArray[Any]) -> NDArray[Any]:
         """A picture (height, width, …) at the cage's resolution as the scan shows it: each pixel as

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from ..specification.card_order import CHAIN_MERGE, TREE_MERGE
 from ..specification.configuration import MachineConfiguration
 from .host_broadcast import HostBroadcast
+from .nodes import ChainedNodes, TreeOfNodes
 from .organisation import Organisation
+
+#: By the card that ends the nodes of a cage.
+ORGANISATIONS: dict[str | None, type[Organisation]] = {
+    None: HostBroadcast, CHAIN_MERGE: ChainedNodes, TREE_MERGE: TreeOfNodes}
 
 
 @lru_cache(maxsize=64)
 def organisation_of(configuration: MachineConfiguration) -> Organisation:
-    """Every cage of processing elements and memory units is Fuchs and Johnson's."""
-    return HostBroadcast(configuration)
+    """Its merge cards tell; a cage without any is Fuchs and Johnson's."""
+    return ORGANISATIONS[configuration.merge](configuration)

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..specification.configuration import Packet
 from ..specification.errors import InputError
 
 Int64 = NDArray[np.int64]
-
-#: Triangles in a packet, or one packet for each node.
-Packet = int | Literal["contiguous"]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +21,20 @@ from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from .triangle_setup import PreparedTriangles, carry_edges
 
+#: Of each triangle of a display list: int64 arrays ``node`` and ``round``, where the machine wants
+#: them.  Nothing for a machine of one node.
+Share: TypeAlias = Mapping[str, NDArray[np.int64]]
+NO_SHARE: Share = {}
 
-def triangles(configuration: MachineConfiguration,
-              display_list: DisplayList) -> NDArray[np.object_]:
+
+def _integers(array: Any) -> NDArray[np.object_]:
+    return np.asarray(array).astype(object)
+
+
+def triangles(configuration: MachineConfiguration, display_list: DisplayList,
+              share: Share = NO_SHARE) -> NDArray[np.object_]:
     """The ``TRIANGLE`` command of every triangle of a list in the machine's formats, in order."""
-    values = {
+    values: dict[str, Any] = {
         f"vertex_{corner}": {
             "x": display_list.position[:, corner, 0].astype(object),
             "y": display_list.position[:, corner, 1].astype(object),
@@ -33,39 +43,38 @@ def triangles(configuration: MachineConfiguration,
                for channel, name in enumerate(CHANNELS)},
         } for corner in range(3)
     }
+    values |= {name: _integers(array) for name, array in share.items()}
     body: NDArray[np.object_] = pack(triangle_layout(configuration), values)
     words: NDArray[np.object_] = (body << BODY_OFFSET) + int(Opcode.TRIANGLE)
     return words
 
 
-
-def prepared_triangles(configuration: MachineConfiguration,
-                       prepared: PreparedTriangles) -> NDArray[np.object_]:
+def prepared_triangles(configuration: MachineConfiguration, prepared: PreparedTriangles,
+                       share: Share = NO_SHARE) -> NDArray[np.object_]:
     """The ``PREPARED_TRIANGLE`` command of every prepared triangle, in order."""
 
-    def integers(array: Any) -> NDArray[np.object_]:
-        return np.asarray(array).astype(object)
-
     def plane(planes: Any) -> dict[str, Any]:
-        return {name: integers(getattr(planes, name)) for name in ("start", "step_x", "step_y")}
+        return {name: _integers(getattr(planes, name)) for name in ("start", "step_x", "step_y")}
 
     colors: list[Any]
     if configuration.shading == "flat":
         assert prepared.flat_color is not None
-        colors = [integers(prepared.flat_color[:, channel]) for channel in range(3)]
+        colors = [_integers(prepared.flat_color[:, channel]) for channel in range(3)]
     else:
         assert prepared.color is not None
         colors = [plane(planes) for planes in prepared.color]
     values: dict[str, Any] = {
-        name: integers(getattr(prepared, name))
+        name: _integers(getattr(prepared, name))
         for name in ("top", "middle", "bottom", "left", "right", "long_edge_left")
     }
     for edge in EDGES:
         carried = carry_edges(getattr(prepared, edge), column_bits=configuration.edge_column_bits,
                               fraction_bits=configuration.edge_fraction_bits)
-        values[edge] = {name: integers(getattr(carried, name)) for name in ("start", "step")}
+        values[edge] = {name: _integers(getattr(carried, name)) for name in ("start", "step")}
+    of_primitive = {name: _integers(array[prepared.primitive]) for name, array in share.items()}
     values["planes"] = {"depth": plane(prepared.depth),
-                        **dict(zip(CHANNELS, colors, strict=True))}
+                        **dict(zip(CHANNELS, colors, strict=True)), **of_primitive}
+    values |= of_primitive
     body: NDArray[np.object_] = pack(prepared_triangle_layout(configuration), values)
     words: NDArray[np.object_] = (body << BODY_OFFSET) + int(Opcode.PREPARED_TRIANGLE)
     return words

@@ -9,8 +9,13 @@ from .errors import InputError
 
 PROCESSING_ELEMENT = "P"
 MEMORY_UNIT = "M"
+CHAIN_MERGE = "C"
+TREE_MERGE = "T"
 #: Every card that a slot can hold, by its letter.  X is no letter: it counts, as in ``4x(PMM)``.
-CARD_NAMES = {PROCESSING_ELEMENT: "processing element", MEMORY_UNIT: "memory unit"}
+CARD_NAMES = {PROCESSING_ELEMENT: "processing element", MEMORY_UNIT: "memory unit",
+              CHAIN_MERGE: "chain merge", TREE_MERGE: "tree merge"}
+#: Cards that end a node, which keeps a picture of its own, and merge its picture with the others'.
+MERGE_CARDS = (CHAIN_MERGE, TREE_MERGE)
 MAXIMUM_CARDS = 4096
 
 _LETTERS = "".join(CARD_NAMES)
@@ -51,9 +56,49 @@ def parse_cards(text: str) -> str:
     return cards
 
 
+def merge_card(cards: str) -> str | None:
+    """The kind of card that ends the nodes of a cage; None where it is all one node."""
+    return next((card for card in cards if card in MERGE_CARDS), None)
+
+
+def node_cards(cards: str) -> list[str]:
+    """The cards of each node, without the merge card that ends it.
+
+    >>> node_cards("PMMPMMCPMC")
+    ['PMMPMM', 'PM']
+    """
+    merge = merge_card(cards)
+    return [cards] if merge is None else cards.split(merge)[:-1]
+
+
+def check_nodes(cards: str) -> None:
+    """Raise ``InputError`` unless all merge cards are of one kind, and the last card is one."""
+    merge = merge_card(cards)
+    if merge is None:
+        return
+    kinds = [f"{card} ({CARD_NAMES[card]})" for card in MERGE_CARDS if card in cards]
+    if len(kinds) > 1:
+        raise InputError(f"cards: {cards!r}: {' and '.join(kinds)} in one cage; end all nodes with "
+                         "merge cards of one kind")
+    if cards[-1] != merge:
+        raise InputError(f"cards: {cards!r}: the last node is not ended; add a {merge} "
+                         f"({CARD_NAMES[merge]}) at the right end")
+
+
 def check_cards(cards: str) -> None:
-    """Raise ``InputError`` unless every memory unit has a processing element to its left
-    and the number of units is a power of two."""
+    """Raise ``InputError`` unless in every node each memory unit has a processing element to its
+    left, and all nodes have one number of units, a power of two."""
+    nodes = node_cards(cards)
+    for node in nodes:
+        _check_node(node)
+    units = sorted({node.count(MEMORY_UNIT) for node in nodes})
+    if len(units) > 1:
+        raise InputError(f"cards: nodes of {' and '.join(map(str, units))} memory units in one "
+                         "cage; give all nodes as many")
+
+
+def _check_node(cards: str) -> None:
+    """``check_cards`` of one node."""
     if PROCESSING_ELEMENT not in cards:
         raise InputError(f"cards: {cards!r} has no processing element; add a P to the left")
     if MEMORY_UNIT not in cards:
@@ -70,7 +115,7 @@ def check_cards(cards: str) -> None:
 
 
 def domains(cards: str) -> list[tuple[int, int]]:
-    """(first unit, number of units) owned by each processing element, left to right."""
+    """(first unit, number of units) owned by each processing element of a node, left to right."""
     shares = [part.count(MEMORY_UNIT) for part in cards.split(PROCESSING_ELEMENT)]
     firsts = list(accumulate(shares))
     return list(zip(firsts[:-1], shares[1:], strict=True))

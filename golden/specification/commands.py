@@ -1,4 +1,4 @@
-"""The words between the host and the central broadcast controller, version 3.
+"""The words between the host and the central broadcast controller, version 4.
 
 One place for the layout: the hardware builds its structures from these tables,
 the host packs and reads its words with them, ``machine.json`` lists them, and
@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 from .configuration import MachineConfiguration
 from .ranges import CHANNEL_BITS
 
-VERSION = 3
+VERSION = 4
 OPCODE_BITS = 4
 BODY_OFFSET = 8
 WORD_BITS = 32
@@ -35,7 +35,11 @@ class Opcode(IntEnum):
     PREPARED_TRIANGLE = 3  # increments computed by the host
     FRAME_END = 4  # finish the picture, show it from the next scan on
     READ_DEPTH = 5  # send every word of the depth buffer
-    READ_COUNTERS = 6  # send the work of every processing element
+    READ_COUNTERS = 6  # send the work of every processing element, and what each node sent
+    # Only where nodes have list memories:
+    LOAD = 7  # what TRIANGLE or PREPARED_TRIANGLE has, for the list of its node
+    DRAW_LISTS = 8  # each node draws all that is in its list
+    CLEAR_LISTS = 9  # all lists are empty
 
 
 class ResponseKind(IntEnum):
@@ -52,6 +56,10 @@ class ResponseKind(IntEnum):
     FRAGMENTS = 8  # per processing element: fragments tested since the frame start
     BUSY = 9  # per processing element: cycles it drew since the frame start
     ERROR = 10  # one of Fault
+    NODE = 11  # at boot, per node: its number and its memory units
+    NODES = 12  # at boot, where merge cards end nodes: how many there are
+    MERGED = 13  # where they do: cycles from the frame start to the merged picture
+    SENT = 14  # per node: pixels its merge card has sent for the last picture
 
 
 class Fault(IntEnum):
@@ -60,6 +68,8 @@ class Fault(IntEnum):
     UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
     UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two, or shares that must
     # be equal are not: nothing is drawn
+    NODES_DIFFER = 3  # nodes have different resolutions: nothing is drawn
+    LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
 
 
 RESPONSE_KIND_BITS = 8
@@ -81,6 +91,10 @@ RESPONSE_FIELDS: dict[ResponseKind, Layout] = {
     ResponseKind.FRAGMENTS: {"fragments": RESPONSE_VALUE_BITS},
     ResponseKind.BUSY: {"cycles": RESPONSE_VALUE_BITS},
     ResponseKind.ERROR: {"fault": RESPONSE_VALUE_BITS},
+    ResponseKind.NODE: {"units": _HALF, "node": _HALF},
+    ResponseKind.NODES: {"nodes": RESPONSE_VALUE_BITS},
+    ResponseKind.MERGED: {"cycles": RESPONSE_VALUE_BITS},
+    ResponseKind.SENT: {"pixels": RESPONSE_VALUE_BITS},
 }
 
 
@@ -101,7 +115,17 @@ def planes_layout(configuration: MachineConfiguration) -> Layout:
     for channel in CHANNELS:
         layout[channel] = (CHANNEL_BITS if configuration.shading == "flat"
                            else plane_layout(configuration.channel_plane_bits))
-    return layout
+    return layout | _round(configuration)
+
+
+def _round(configuration: MachineConfiguration) -> Layout:
+    """The round in which a triangle's node draws it; only where pixels keep an order."""
+    return {"round": configuration.order_bits} if configuration.order_bits else {}
+
+
+def _node(configuration: MachineConfiguration) -> Layout:
+    """The node that draws a triangle; only where merge cards end nodes."""
+    return {"node": configuration.node_bits} if configuration.node_bits else {}
 
 
 def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
@@ -113,6 +137,7 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
         "long_edge_left": 1,
         **{edge: edge_layout(configuration) for edge in EDGES},
         "planes": planes_layout(configuration),
+        **_node(configuration),
     }
 
 
@@ -124,7 +149,8 @@ def triangle_layout(configuration: MachineConfiguration) -> Layout:
         "depth": configuration.depth_bits,
         **dict.fromkeys(CHANNELS, CHANNEL_BITS),
     }
-    return {f"vertex_{corner}": vertex for corner in range(3)}
+    return {**{f"vertex_{corner}": vertex for corner in range(3)},
+            **_round(configuration), **_node(configuration)}
 
 
 def frame_start_layout() -> Layout:

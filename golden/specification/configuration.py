@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from .card_order import MEMORY_UNIT, PROCESSING_ELEMENT, check_cards, domains, parse_cards
+from .card_order import (
+    MEMORY_UNIT,
+    PROCESSING_ELEMENT,
+    check_cards,
+    check_nodes,
+    domains,
+    merge_card,
+    node_cards,
+    parse_cards,
+)
 from .display_list import coordinate_bits
 from .edge_widths import edge_column_bits, edge_fraction_bits, edge_height_bits
 from .errors import InputError
@@ -25,6 +34,12 @@ MAXIMUM_BLOCK = 32
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
+MAXIMUM_NODES = 64
+MAXIMUM_ORDER_BITS = 16  # 65,536 rounds of a packet for each node
+
+#: Triangles in a packet, or one packet for each node.
+Packet = int | Literal["contiguous"]
+MAXIMUM_PACKET = (1 << 31) - 1
 
 #: Field → least and greatest value, besides ``FORMAT_RANGES``, where they depend on no other field.
 RANGES = {
@@ -39,6 +54,9 @@ RANGES = {
     "setup_interval": (1, MAXIMUM_SETUP_INTERVAL),
     "depth_integer_bits": (0, 64),
     "channel_integer_bits": (0, 64),
+    "maximum_nodes": (0, MAXIMUM_NODES),
+    "order_bits": (0, MAXIMUM_ORDER_BITS),
+    "list_words": (0, MAXIMUM_WORDS),
 }
 
 
@@ -54,7 +72,8 @@ class MachineConfiguration:
                           triangle exact that has all its vertices on the screen
     ``shading``           ``"flat"`` builds no colour interpolators
     ``words``             words of each memory unit; 0 means what ``width`` by ``height`` needs
-    ``maximum_units``     the largest number the ID lines carry; 0 means what ``cards`` holds
+    ``maximum_units``     the largest number the ID lines carry; 0 means what a node of ``cards``
+                          holds
     ``fifo_depth``        primitives a processing element can hold in waiting
     ``block``             side of the squares of pixels in which processing elements interlace, a
                           power of two; 1 interlaces all memory units pixel by pixel
@@ -70,6 +89,15 @@ class MachineConfiguration:
     ``setup_interval``    clocks that set-up in hardware may take for a division: 1 is a stage for
                           each step, ``MAXIMUM_SETUP_INTERVAL`` one stage for all
     ``observe``           the machine also says, in each clock, what every processing element does
+
+    Where merge cards end nodes, that each draw a share of the triangles:
+
+    ``packet``         triangles that follow one another in the list and go to one node; 1 is round
+                       robin, ``"contiguous"`` gives each node one run of the list
+    ``order_bits``     of a pixel's round, which keeps ties between nodes in the list's order; None
+                       means none for contiguous shares, else as many as a machine may have
+    ``list_words``     triangles that the list memory of each node holds; 0 builds none
+    ``maximum_nodes``  the largest number the node lines carry; 0 means what ``cards`` holds
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -116,6 +144,10 @@ class MachineConfiguration:
     edge_fraction_bits: int = 0
     depth_integer_bits: int = 0
     channel_integer_bits: int = 0
+    packet: Packet = 1
+    order_bits: int = field(default=None)  # type: ignore[assignment]
+    list_words: int = 0
+    maximum_nodes: int = 0
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -128,6 +160,10 @@ class MachineConfiguration:
             check_whole(name, getattr(self, name), low, high)
         if self.fraction_bits is None:
             fix("fraction_bits", on_screen_fraction_bits(self.width, self.height, self.sub_bits))
+        self._check_packet()
+        if self.order_bits is None:
+            shared = self.nodes > 1 and self.packet != "contiguous"
+            fix("order_bits", MAXIMUM_ORDER_BITS if shared else 0)
         for name, (low, high) in RANGES.items():
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
@@ -140,8 +176,10 @@ class MachineConfiguration:
         most = edge_fraction_bits(self.edge_height_bits, self.height)
         check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
+        check_nodes(self.cards)
         if not self.allow_orphans:
             check_cards(self.cards)
+        self._check_nodes()
         self._check_block()
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
@@ -165,6 +203,25 @@ class MachineConfiguration:
                              f"{self.timing.vertical_active}, the machine draws "
                              f"{self.width}x{self.height}")
 
+    def _check_packet(self) -> None:
+        if self.packet != "contiguous":
+            check_whole("packet", self.packet, 1, MAXIMUM_PACKET)
+
+    def _check_nodes(self) -> None:
+        if self.nodes > MAXIMUM_NODES:
+            raise InputError(f"cards: {self.nodes} nodes, at most {MAXIMUM_NODES}")
+        if self.maximum_nodes == 0:
+            object.__setattr__(self, "maximum_nodes", self.nodes)
+        if not self.nodes <= self.maximum_nodes:
+            raise InputError(f"maximum_nodes: the node lines carry {self.maximum_nodes}, the cage "
+                             f"holds {self.nodes} nodes")
+        if self.merge is None:
+            for name, least in (("list_words", 0), ("order_bits", 0), ("maximum_nodes", 1)):
+                if getattr(self, name) != least:
+                    raise InputError(f"{name}: {getattr(self, name)} is for cages of nodes, and "
+                                     f"{self.cards} has no merge card; end its nodes with one, as "
+                                     "in 2x(PMMC), or leave it out")
+
     def _check_block(self) -> None:
         if self.block & (self.block - 1):
             raise InputError(f"block: must be a power of two, such as 1, 4 or {MAXIMUM_BLOCK}, not "
@@ -176,7 +233,7 @@ class MachineConfiguration:
                              "alternate along the rows already; leave it out, or interlace pixel "
                              "by pixel (block 1)")
         squares = f"block: squares of {self.block}x{self.block} pixels"
-        shares = {units for _, units in domains(self.cards)}
+        shares = self._shares
         if len(shares) > 1 and not self.allow_orphans:
             raise InputError(f"{squares} want as many memory units behind each processing element, "
                              f"not {' and '.join(map(str, sorted(shares)))}; change the cards, or "
@@ -197,8 +254,28 @@ class MachineConfiguration:
     # Cards
 
     @property
+    def merge(self) -> str | None:
+        """The card that ends each node; None where the cage is all one node."""
+        return merge_card(self.cards)
+
+    @property
+    def node_cards(self) -> list[str]:
+        """The cards of each node, without the merge card."""
+        return node_cards(self.cards)
+
+    @property
+    def nodes(self) -> int:
+        return len(self.node_cards)
+
+    @property
     def units(self) -> int:
-        return self.cards.count(MEMORY_UNIT)
+        """Memory units of a node."""
+        return max(node.count(MEMORY_UNIT) for node in self.node_cards)
+
+    @property
+    def _shares(self) -> set[int]:
+        """How many units processing elements have."""
+        return {units for node in self.node_cards for _, units in domains(node)}
 
     @property
     def processing_elements(self) -> int:
@@ -208,6 +285,11 @@ class MachineConfiguration:
     def id_bits(self) -> int:
         """ID lines on the backplane: enough for the total, not only the last unit's number."""
         return self.maximum_units.bit_length()
+
+    @property
+    def node_bits(self) -> int:
+        """Node lines on the backplane: enough for the total; none where there is no merge card."""
+        return 0 if self.merge is None else self.maximum_nodes.bit_length()
 
     @property
     def interlace(self) -> Interlace:
@@ -258,7 +340,7 @@ class MachineConfiguration:
         """
         if self.block == 1:
             return 0
-        return max(1, *(units for _, units in domains(self.cards))).bit_length() - 1
+        return max(1, *self._shares).bit_length() - 1
 
     @property
     def edges_on_screen(self) -> bool:
@@ -278,6 +360,12 @@ class MachineConfiguration:
     def depth_plane_bits(self) -> int:
         """Carried depth; sums wrap, values at covered pixels fit with their error."""
         return self._plane_bits(self.depth_integer_bits, self.depth_bits)
+
+    @property
+    def rank_bits(self) -> int:
+        """What is kept of a pixel to compare it by: depth, and below it the order.  Within a node
+        an order never decides, since triangles come in ascending order."""
+        return self.depth_bits + self.order_bits
 
     @property
     def channel_plane_bits(self) -> int:

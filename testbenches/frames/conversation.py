@@ -29,11 +29,18 @@ def owed_at_boot(organisation: Organisation) -> list[Owed]:
 
 
 def _boot(organisation: Organisation) -> Iterator[Owed]:
-    for domain in organisation.domains:
-        yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
-    yield _report(ResponseKind.UNITS, owned=organisation.owned_units, total=organisation.units)
-    if organisation.refused:
-        yield Owed(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)
+    for node, units in enumerate(organisation.node_units):
+        for domain in organisation.domains:
+            if domain.node == node:
+                yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
+        if organisation.merges:
+            yield _report(ResponseKind.NODE, node=node, units=units)
+    yield _report(ResponseKind.UNITS, owned=organisation.owned_units,
+                  total=sum(organisation.node_units))
+    if organisation.merges:
+        yield _report(ResponseKind.NODES, nodes=organisation.nodes)
+    if organisation.fault is not None:
+        yield Owed(ResponseKind.ERROR, organisation.fault)
         return
     width, height, *_ = organisation.resolution
     yield _report(ResponseKind.PICTURE, width=width, height=height)
@@ -46,20 +53,40 @@ def _report(kind: ResponseKind, **fields: int) -> Owed:
 
 def owed_to(organisation: Organisation, word: int) -> list[Owed]:
     """What answers one command."""
-    if organisation.refused:
-        return [Owed(ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)]
+    if organisation.fault is not None:
+        return [Owed(ResponseKind.ERROR, organisation.fault)]
     opcode = opcode_of(word)
-    if opcode in (Opcode.FRAME_START, Opcode.PREPARED_TRIANGLE) or (
-            opcode == Opcode.TRIANGLE and organisation.configuration.setup == "hardware"):
+    if opcode in _silent(organisation):
         return []
     if opcode == Opcode.FRAME_END:
-        return [Owed(ResponseKind.FRAME_DRAWN), Owed(ResponseKind.FRAME_SHOWN)]
+        merged = [Owed(ResponseKind.MERGED)] if organisation.merges else []
+        return [Owed(ResponseKind.FRAME_DRAWN), *merged, Owed(ResponseKind.FRAME_SHOWN)]
     if opcode == Opcode.READ_DEPTH:
         return [Owed(ResponseKind.DEPTH)] * organisation.depths_read_back
     if opcode == Opcode.READ_COUNTERS:
-        return [Owed(ResponseKind.FRAGMENTS),
-                Owed(ResponseKind.BUSY)] * len(organisation.domains)
+        return _counters(organisation)
     return [Owed(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)]
+
+
+def _silent(organisation: Organisation) -> list[Opcode]:
+    """Commands that nothing answers."""
+    configuration = organisation.configuration
+    silent = [Opcode.FRAME_START, Opcode.PREPARED_TRIANGLE]
+    if configuration.setup == "hardware":
+        silent.append(Opcode.TRIANGLE)
+    if configuration.list_words:
+        silent += [Opcode.LOAD, Opcode.DRAW_LISTS, Opcode.CLEAR_LISTS]
+    return silent
+
+
+def _counters(organisation: Organisation) -> list[Owed]:
+    """From left to right: of each processing element, and of each node that is merged."""
+    owed = []
+    for node in range(organisation.nodes):
+        elements = sum(domain.node == node for domain in organisation.domains)
+        owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * elements
+        owed += [Owed(ResponseKind.SENT)] * organisation.merges
+    return owed
 
 
 def responses_owed(organisation: Organisation, words: Sequence[int]) -> int:

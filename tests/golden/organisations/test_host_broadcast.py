@@ -43,10 +43,8 @@ def test_every_pixel_has_a_place_of_its_own(organisation):
 
 
 def test_one_node_draws_and_shows_everything(organisation):
-    x, y = pixels(organisation)
-    assert organisation.nodes == 1
-    assert not organisation.node_of(np.arange(100)).any()
-    assert not organisation.shown_by(x, y).any()
+    assert organisation.nodes == 1 and organisation.is_scanned(0) and not organisation.merges
+    assert not organisation.shares(100).node.any()
 
 
 def test_domains_are_what_lies_right_of_each_processing_element(organisation):
