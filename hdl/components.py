@@ -1,10 +1,12 @@
 """Every component that can be exported by itself, by the name of its module."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from amaranth.lib import wiring
 
+from ..golden.specification.card_order import MERGE_CARDS
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.queues import depth_lanes
 from .arithmetic.divider import Divider
@@ -16,13 +18,13 @@ from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
-from .machine import BOARDS
+from .machine import BOARDS, CARDS
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
 from .memory_unit.two_port_memory import TwoPortMemory
-from .memory_unit.word_parts import PARTS
+from .memory_unit.word_parts import word_parts
 from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
@@ -45,6 +47,9 @@ from .triangle_setup.vertex_sort import VertexSort
 
 __all__ = ["COMPONENTS"]
 
+#: Names of the cards' modules → their letters in the card order.
+LETTERS = {name: letter for letter, name in CARDS.items()}
+
 
 def _depth(configuration: MachineConfiguration) -> dict[str, int]:
     """The interpolant that every machine has."""
@@ -52,6 +57,11 @@ def _depth(configuration: MachineConfiguration) -> dict[str, int]:
 
 
 def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
+    """A merge card is as in a cage that it ends, where the configuration has none."""
+    letter = LETTERS.get(name)
+    if letter in MERGE_CARDS and letter != configuration.merge:
+        configuration = replace(configuration, cards="".join(
+            cards + letter for cards in configuration.node_cards))
     return BOARDS[name](configuration=configuration)
 
 
@@ -72,8 +82,8 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
-    "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.depth_bits,
-                                               tag_bits=c.tag_bits),
+    "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.rank_bits,
+                                               tag_bits=c.tag_bits, parts=word_parts(c)),
     # The one that computes the area of a triangle.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
         a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
@@ -81,21 +91,21 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "pixel_box": lambda c: PixelBox(grid=grid_layout(c), coordinate_bits=c.coordinate_bits,
                                     sub_bits=c.sub_bits),
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
-    "processing_element_control": lambda c: ProcessingElementControl(id_bits=c.id_bits,
-                                                                     depth_bits=c.depth_bits),
+    "processing_element_control": lambda c: ProcessingElementControl(
+        id_bits=c.id_bits, depth_bits=c.rank_bits, order_bits=c.order_bits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
     "survey": lambda c: Survey(**memory_bus_bits(c)),
-    "tag_sweep": lambda c: TagSweep(words=c.words, parts=len(PARTS)),
+    "tag_sweep": lambda c: TagSweep(words=c.words, parts=len(word_parts(c))),
     "triangle_outline": lambda c: TriangleOutline(configuration=c),
     "triangle_rows": lambda c: TriangleRows(configuration=c),
     "triangle_setup": lambda c: TriangleSetup(configuration=c),
     "triangle_spans": lambda c: TriangleSpans(configuration=c),
     "two_port_depth_test": lambda c: TwoPortDepthTest(**memory_bus_bits(c)),
-    "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.depth_bits,
-                                               tag_bits=c.tag_bits),
+    "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.rank_bits,
+                                               tag_bits=c.tag_bits, parts=word_parts(c)),
     "vertex_sort": lambda c: VertexSort(configuration=c),
 }

@@ -1,35 +1,52 @@
 """The whole machine: cards in slots, and nothing but wires between them."""
 
-from functools import reduce
-from operator import and_, or_
-
 from amaranth.hdl import *
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ..golden.specification import commands
-from ..golden.specification.card_order import CARD_NAMES, MEMORY_UNIT, PROCESSING_ELEMENT
+from ..golden.specification.card_order import (
+    CARD_NAMES,
+    MEMORY_UNIT,
+    MERGE_CARDS,
+    PROCESSING_ELEMENT,
+)
 from ..golden.specification.configuration import MachineConfiguration
 from .backplane.words import response_layout
 from .controller.central_broadcast_controller import CentralBroadcastController
+from .lines_to_all import connect_broadcast, connect_pictures, connect_scan
 from .memory_unit.memory_unit import MemoryUnit
+from .nodes.chain_merge import ChainMerge
+from .nodes.merge_card import MergeCard
+from .nodes.node_lines import Node, connect_nodes
 from .observer import MachineActivity, activity_layout
 from .processing_element.processing_element import ProcessingElement
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
-__all__ = ["BOARDS", "CARDS", "Machine"]
+__all__ = ["BOARDS", "CARDS", "Machine", "boards_of"]
 
 #: Every kind of board, by the name of its Verilog module.
 BOARDS: dict[str, type[wiring.Component]] = {
     "central_broadcast_controller": CentralBroadcastController,
     "processing_element": ProcessingElement,
     "memory_unit": MemoryUnit,
+    "chain_merge": ChainMerge,
     "video_scan_generator": VideoScanGenerator,
 }
 
 #: The boards that slots can hold, by their letter in the card order.
 CARDS = {letter: name.replace(" ", "_") for letter, name in CARD_NAMES.items()}
+
+
+#: Those that are only in cages that have them in their card order.
+_MERGE_CARDS = {CARDS[letter]: letter for letter in MERGE_CARDS}
+
+
+def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
+    """The kinds of boards that a machine has."""
+    return {name: board for name, board in BOARDS.items()
+            if name not in _MERGE_CARDS or _MERGE_CARDS[name] in configuration.cards}
 
 
 class Machine(wiring.Component):
@@ -90,6 +107,31 @@ class Machine(wiring.Component):
     def memory_units(self) -> list[MemoryUnit]:
         return self._cards_of(MEMORY_UNIT)
 
+    @property
+    def merge_cards(self) -> list[MergeCard]:
+        return self._cards_of(self.configuration.merge)
+
+    @property
+    def nodes(self) -> list[Node]:
+        """The cards of each node; of a cage of nodes."""
+        found, first = [], 0
+        for slot, (card, letter) in enumerate(zip(self.cards, self.configuration.cards,
+                                                  strict=True)):
+            if letter == self.configuration.merge:
+                cards = list(zip(self.cards[first:slot], self.configuration.cards[first:slot],
+                                 strict=True))
+                found.append(Node(
+                    [own for own, kind in cards if kind == PROCESSING_ELEMENT],
+                    [own for own, kind in cards if kind == MEMORY_UNIT], card))
+                first = slot + 1
+        return found
+
+    @property
+    def storages(self):
+        """Every RAM whose contents outlast a frame: of memory units, and of lists."""
+        boards = [*(unit.memory for unit in self.memory_units), *self.merge_cards]
+        return [storage for board in boards for storage in board.storages]
+
     def elaborate(self, platform):
         m = Module()
         m.submodules.controller = controller = self.controller
@@ -106,7 +148,10 @@ class Machine(wiring.Component):
         for slot, card in enumerate(self.cards):
             wiring.connect(wires(m, f"slot_{slot}_wires"), left.right, card.left)
             left = card
-        self._connect_lines_to_all(m, total=left.right.id)
+        if self.configuration.merge is None:
+            self._connect_lines_to_all(m, total=left.right.id)
+        else:
+            connect_nodes(m, controller, generator, self.nodes)
         if self.configuration.observe:
             self._observe(m)
         return m
@@ -125,40 +170,15 @@ class Machine(wiring.Component):
     def _connect_lines_to_all(self, m, total):
         controller, generator = self.controller, self.scan_generator
         fixed = wires(m, "total_wires")
-        broadcast = wires(m, "broadcast_wires")
-        scan = wires(m, "scan_wires")
         fixed.d.comb += controller.total.eq(total)
         fixed.d.comb += [card.total.eq(total) for card in self.cards
                          if "total" in card.signature.members]
 
-        elements, units = self.processing_elements, self.memory_units
-        broadcast.d.comb += [
-            controller.broadcast.ready.eq(
-                reduce(and_, (element.broadcast.ready for element in elements), C(1))),
-            controller.broadcast.done.eq(
-                reduce(and_, (element.broadcast.done for element in elements), C(1))),
-        ]
-        for element in elements:
-            broadcast.d.comb += [
-                element.broadcast.strobe.eq(controller.broadcast.strobe),
-                element.broadcast.packet.eq(controller.broadcast.packet),
-            ]
-
-        pictures = wires(m, "picture_wires")
-        pictures.d.comb += controller.pictures.swept.eq(
-            reduce(and_, (unit.pictures.swept for unit in units), C(1)))
-        for unit in units:
-            pictures.d.comb += [
-                getattr(unit.pictures, name).eq(getattr(controller.pictures, name))
-                for name in ("front", "depth_tag", "initialise", "sweep")]
-            pictures.d.comb += [tag.eq(source) for tag, source in zip(
-                unit.pictures.color_tag, controller.pictures.color_tag, strict=True)]
-        scan.d.comb += [
-            controller.scan_start.eq(generator.start),
-            generator.background.eq(controller.background),
-            generator.scan.video.eq(reduce(or_, (unit.scan.video for unit in units), C(0))),
-            generator.scan.drawn.eq(reduce(or_, (unit.scan.drawn for unit in units), C(0))),
-        ]
-        for unit in units:
-            scan.d.comb += [unit.scan.fetch.eq(generator.scan.fetch),
-                            unit.scan.show.eq(generator.scan.show)]
+        broadcast = wires(m, "broadcast_wires")
+        scan = wires(m, "scan_wires")
+        connect_broadcast(broadcast, controller.broadcast,
+                          [element.broadcast for element in self.processing_elements])
+        connect_pictures(wires(m, "picture_wires"), controller.pictures, self.memory_units)
+        scan.d.comb += controller.scan_start.eq(generator.start)
+        scan.d.comb += generator.background.eq(controller.background)
+        connect_scan(scan, generator.scan, self.memory_units)

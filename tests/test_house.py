@@ -19,8 +19,8 @@ WINGS = {
         "hard_cases", "scene_argument", "scene_display_list", "precision"),
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
-        "depth_test", "merging", "memory_unit", "processing_element", "controller", "video",
-        "machine", "components"),
+        "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all", "controller",
+        "video", "nodes", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "reports", "render", "speed",
         "fpga", "precision", "cocotb_bench", "command_line", "studies"),

@@ -210,6 +210,11 @@ def frame_start(background: tuple[int, int, int]) -> int:
                    pack(frame_start_layout(), dict(zip(CHANNELS, background, strict=True))))
 
 
+def with_opcode(word: int, opcode: Opcode) -> int:
+    """A command with the same body."""
+    return word - opcode_of(word) + int(opcode)
+
+
 def opcode_of(word: int) -> int:
     """The opcode of a command, which need not be one of ``Opcode``."""
     return word & ((1 << OPCODE_BITS) - 1)

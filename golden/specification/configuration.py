@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from .card_order import (
+    CHAIN_MERGE,
     MEMORY_UNIT,
     PROCESSING_ELEMENT,
+    TREE_MERGE,
     check_cards,
     check_nodes,
     domains,
@@ -368,6 +370,21 @@ class MachineConfiguration:
         return self.depth_bits + self.order_bits
 
     @property
+    def share_of_list_bits(self) -> int:
+        """What a triangle's command says of its node and its round."""
+        return self.node_bits + self.order_bits
+
+    @property
+    def scans_rank(self) -> bool:
+        """Pictures are merged as they are scanned, so that the shown one has its depths as well."""
+        return self.merge == CHAIN_MERGE
+
+    @property
+    def sends_drawn(self) -> bool:
+        """Nodes send what they have drawn, and so know it."""
+        return self.merge == TREE_MERGE
+
+    @property
     def channel_plane_bits(self) -> int:
         return self._plane_bits(self.channel_integer_bits, CHANNEL_BITS)
 
@@ -382,6 +399,11 @@ class MachineConfiguration:
     @property
     def depth_background(self) -> int:
         return (1 << self.depth_bits) - 1
+
+    @property
+    def rank_background(self) -> int:
+        """The greatest depth and the greatest order."""
+        return (1 << self.rank_bits) - 1
 
     @property
     def cycles_per_scan(self) -> int:

@@ -41,7 +41,7 @@ __all__ = [
 def memory_bus_bits(configuration: MachineConfiguration) -> dict[str, int]:
     """The numbers that a ``MemoryBus`` is made from."""
     return {"id_bits": configuration.id_bits, "address_bits": configuration.address_bits,
-            "depth_bits": configuration.depth_bits}
+            "depth_bits": configuration.rank_bits}
 
 
 def read_request_layout(*, id_bits: int, address_bits: int) -> data.StructLayout:
@@ -68,6 +68,9 @@ class MemoryBus(wiring.Signature):
     and its busy signal is low; a request that no unit answers is never busy.  A read
     sees every write that took place before it; what it sees of one in the same clock,
     which only units with two ports take, is unknown.  Those are never busy.
+
+    What is called depth here has the order of its node's round in its low bits, where pixels keep
+    one (``MachineConfiguration.rank_bits``): as a number it is compared like a depth.
 
     The answers of the units are wired or: a unit to which nothing is addressed drives 0
     on all of them (``scanned`` excepted, which is no answer to anybody), and so does the
@@ -120,10 +123,13 @@ class Connector(wiring.Signature):
         The memory bus, driven by the nearest processing element to the left.
     response: In(stream of response words)
         What the processing elements further right have to say to the controller.
+    node: Out(node_bits)
+        Nodes to the left; only where merge cards end nodes.
     """
 
     def __init__(self, configuration: MachineConfiguration):
         super().__init__({
+            **({"node": Out(configuration.node_bits)} if configuration.node_bits else {}),
             "id": Out(configuration.id_bits),
             "lines": Out(MemoryBus(**memory_bus_bits(configuration))),
             "response": In(stream.Signature(response_layout())),
@@ -217,6 +223,8 @@ class ScanLines(wiring.Signature):
     drawn: In(1)
         It has been drawn since its frame started, else the background is shown; units that do not
         hold the shown pixel drive 0 (wired or).
+    rank: In(rank_bits)
+        Its depth and order, likewise; only where pictures are merged as they are scanned.
     """
 
     def __init__(self, configuration: MachineConfiguration):
@@ -225,4 +233,5 @@ class ScanLines(wiring.Signature):
             "show": Out(scan_address_layout(configuration)),
             "video": In(COLOR_BITS),
             "drawn": In(1),
+            **({"rank": In(configuration.rank_bits)} if configuration.scans_rank else {}),
         })

@@ -30,6 +30,10 @@ class Operation(enum.Enum, shape=3):
     DRAW = 3  # rasterise one prepared triangle
     READ_DEPTH = 4  # send every depth word of your domain
     READ_COUNTERS = 5  # send your counts since the last frame start
+    # To merge cards alone, which keep lists for their nodes.
+    LOAD = 6  # keep one prepared triangle
+    DRAW_LISTS = 7  # have your processing elements draw all that you keep
+    CLEAR_LISTS = 0  # keep nothing
 
 
 def struct_layout(layout: commands.Layout) -> data.StructLayout:
@@ -48,7 +52,8 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> data.Struct
 def outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """A prepared triangle without its interpolants: rows, columns and edges."""
     layout = prepared_triangle_layout(configuration).members
-    return data.StructLayout({name: shape for name, shape in layout.items() if name != "planes"})
+    return data.StructLayout({name: shape for name, shape in layout.items()
+                              if name not in ("planes", "node")})
 
 
 def row_shape(configuration: MachineConfiguration) -> Shape:

@@ -19,6 +19,7 @@ from ..backplane.words import (
 )
 from ..triangle_setup.triangle_setup import TriangleSetup
 from .frame_tags import FrameTags
+from .node_control import NodeControl
 
 __all__ = ["CentralBroadcastController"]
 
@@ -68,6 +69,7 @@ class CentralBroadcastController(wiring.Component):
         self.tags = FrameTags(tag_bits=configuration.tag_bits)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
+        self._nodes = NodeControl(configuration=configuration) if configuration.node_bits else None
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
@@ -79,6 +81,7 @@ class CentralBroadcastController(wiring.Component):
         self._unequal = Signal(name="unequal")
         self._supported = Signal(name="supported")
         self._resolution = Signal(commands.RESPONSE_VALUE_BITS, name="picture")
+        self._loading = Signal(name="loading")  # the last command was LOAD
         # Clocks until ``done`` counts the last strobe.
         self._settle = Signal(range(BroadcastLines.settle_clocks + 1), name="settle")
         self._backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
@@ -93,14 +96,19 @@ class CentralBroadcastController(wiring.Component):
             "pictures": Out(PictureLines(configuration)),
             "background": Out(COLOR_BITS),
             **({"more": Out(1)} if configuration.observe else {}),
+            **({} if self._nodes is None else self._nodes.members),
         })
 
     def elaborate(self, platform):
         m = Module()
+        if self.configuration.node_bits:
+            m.d.comb += self.right.node.eq(0)
         m.d.comb += self.broadcast.packet.eq(self._packet)
         self._count(m)
         self._picture(m)
         self._count_owned(m)
+        if self._nodes is not None:
+            self._nodes.count(m, self)
         self._tags(m)
         m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
         if self._setup is not None:
@@ -133,7 +141,7 @@ class CentralBroadcastController(wiring.Component):
         return self.commands.payload[commands.BODY_OFFSET:]
 
     @property
-    def _quiet(self):
+    def quiet(self):
         """All that was announced is done."""
         return self.broadcast.done & (self._settle == 0)
 
@@ -142,9 +150,23 @@ class CentralBroadcastController(wiring.Component):
         """The command need not wait for triangles that are still being set up."""
         if self._setup is None:
             return C(1)
-        return (self._opcode == Opcode.TRIANGLE) | ~self._setup.busy
+        in_turn = (self._opcode == Opcode.TRIANGLE) | ~self._setup.busy
+        if self.configuration.list_words:  # what is set up is all to be loaded, or all to be drawn
+            in_turn &= ~self._setup.busy | ~self._loading
+            in_turn |= (self._opcode == Opcode.LOAD) & self._loading
+        return in_turn
 
-    def _announce(self, m, operation, then=None, *, when=1):
+    @property
+    def _vertices(self):
+        """Commands of vertices that the machine sets up."""
+        return [Opcode.TRIANGLE] + [Opcode.LOAD] * bool(self.configuration.list_words)
+
+    @property
+    def unsupported_units(self):
+        """The cage draws nothing: so many memory units, or such shares, cannot be interlaced."""
+        return ~self._supported | self._unequal
+
+    def announce(self, m, operation, then=None, *, when=1):
         """Strobe the packet as soon as all are ready."""
         m.d.comb += self._packet.operation.eq(operation)
         with m.If(self.broadcast.ready & when):
@@ -152,7 +174,7 @@ class CentralBroadcastController(wiring.Component):
             if then is not None:
                 m.next = then
 
-    def _respond(self, m, kind, value, then):
+    def respond(self, m, kind, value, then):
         """The controller's own response; the chain waits meanwhile."""
         m.d.comb += [
             self.responses.valid.eq(1),
@@ -183,7 +205,13 @@ class CentralBroadcastController(wiring.Component):
         with m.If(setup.triangles.valid):
             m.d.comb += [self._packet.body.draw.eq(setup.triangles.payload),
                          setup.triangles.ready.eq(self.broadcast.ready)]
-            self._announce(m, Operation.DRAW)
+            operation = Operation.DRAW
+            if self.configuration.list_words:
+                operation = Mux(self._loading, Operation.LOAD, Operation.DRAW)
+            self.announce(m, operation)
+        if self.configuration.list_words:
+            with m.If(self.commands.valid & self.commands.ready):
+                m.d.sync += self._loading.eq(self._opcode == Opcode.LOAD)
 
     def _observe(self, m):
         offered = self.commands.valid & ((self._opcode == Opcode.TRIANGLE)
@@ -195,16 +223,20 @@ class CentralBroadcastController(wiring.Component):
     def _boot(self, m):
         """From reset to the first command."""
         with m.State("SURVEY"):
-            self._announce(m, Operation.SURVEY, "SURVEYING")
-        with m.State("SURVEYING"), m.If(self._quiet):
+            self.announce(m, Operation.SURVEY, "SURVEYING")
+        with m.State("SURVEYING"), m.If(self.quiet):
             m.next = "REPORT_UNITS"
+        nodes = self._nodes
         with m.State("REPORT_UNITS"):
-            self._respond(m, ResponseKind.UNITS, response_value(
-                ResponseKind.UNITS, total=self.total, owned=self._owned),
-                          "CHECK_UNITS")
+            self.respond(m, ResponseKind.UNITS, response_value(
+                ResponseKind.UNITS, total=self.total if nodes is None else nodes.units,
+                owned=self._owned), "CHECK_UNITS" if nodes is None else "REPORT_NODES")
+        if nodes is not None:
+            nodes.report_nodes(m, self, "CHECK_UNITS")
         with m.State("CHECK_UNITS"):
             m.next = "INITIALISE"
-            with m.If(~self._supported | self._unequal):
+            with m.If(self.unsupported_units if nodes is None
+                      else self.unsupported_units | nodes.refused):
                 m.next = "REFUSE"
         with m.State("INITIALISE"):
             m.d.comb += self.pictures.initialise.eq(1)
@@ -214,21 +246,25 @@ class CentralBroadcastController(wiring.Component):
             m.d.sync += booted.eq(self._cycles)
             m.next = "REPORT_PICTURE"
         with m.State("REPORT_PICTURE"):
-            self._respond(m, ResponseKind.PICTURE, self._resolution, "REPORT_BOOTED")
+            self.respond(m, ResponseKind.PICTURE, self._resolution, "REPORT_BOOTED")
         with m.State("REPORT_BOOTED"):
-            self._respond(m, ResponseKind.BOOTED, booted, "COMMAND")
+            self.respond(m, ResponseKind.BOOTED, booted, "COMMAND")
 
     def _command(self, m):
         """A command is offered, and may be taken."""
         m.d.comb += self.commands.ready.eq(self.broadcast.ready)
         with m.Switch(self._opcode):
             if self._setup is not None:
-                with m.Case(Opcode.TRIANGLE):
+                with m.Case(*self._vertices):
                     m.d.comb += [self._setup.vertices.valid.eq(1),
                                  self.commands.ready.eq(self._setup.vertices.ready)]
+            elif self.configuration.list_words:
+                with m.Case(Opcode.LOAD):
+                    self._hold_to_picture(m)
+                    self.announce(m, Operation.LOAD)
             with m.Case(Opcode.PREPARED_TRIANGLE):
                 self._hold_to_picture(m)
-                self._announce(m, Operation.DRAW)
+                self.announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
                 m.d.sync += [self._frame_cycles.eq(0), self._scans.eq(self.scan_start)]
@@ -239,10 +275,15 @@ class CentralBroadcastController(wiring.Component):
             with m.Case(Opcode.FRAME_END):
                 m.d.comb += self.commands.ready.eq(1)
                 m.next = "DRAWING"
+            if self._nodes is not None:
+                self._nodes.list_commands(m, self)
             for opcode, operation in ((Opcode.READ_DEPTH, Operation.READ_DEPTH),
                                       (Opcode.READ_COUNTERS, Operation.READ_COUNTERS)):
+                if opcode == Opcode.READ_DEPTH and self.configuration.scans_rank:
+                    self._nodes.read_depth(m, self)
+                    continue
                 with m.Case(opcode):
-                    self._announce(m, operation, "ANSWERING", when=self._quiet)
+                    self.announce(m, operation, "ANSWERING", when=self.quiet)
                     m.d.comb += self.commands.ready.eq(self.broadcast.strobe)
             with m.Default():
                 m.d.comb += self.commands.ready.eq(1)
@@ -266,35 +307,44 @@ class CentralBroadcastController(wiring.Component):
         """The states after a command that is not done when it is taken."""
         with m.State("START_FRAME"):
             # What is still drawn belongs to the old tag, and so waits for the new one.
-            self._announce(m, Operation.FRAME_START, "COMMAND",
-                           when=self._quiet & self.tags.ready)
+            self.announce(m, Operation.FRAME_START, "COMMAND",
+                           when=self.quiet & self.tags.ready)
             m.d.comb += self.tags.start.eq(self.broadcast.strobe)
         with m.State("UNKNOWN"):
-            self._respond(m, ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
-        with m.State("ANSWERING"), m.If(self._quiet):
+            self.respond(m, ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
+        with m.State("ANSWERING"), m.If(self.quiet):
             m.next = "COMMAND"
+        if self._nodes is not None:
+            self._nodes.list_states(m, self)
+            self._nodes.read_states(m, self)
 
     def _show(self, m):
         """From the end of a frame's commands until its picture is shown."""
         pictures = self.pictures
-        with m.State("DRAWING"), m.If(self._quiet):
+        with m.State("DRAWING"), m.If(self.quiet):
             drawn = Signal.like(self._frame_cycles, name="drawn")
             m.d.sync += drawn.eq(self._frame_cycles)
             m.next = "REPORT_DRAWN"
         with m.State("REPORT_DRAWN"):
-            self._respond(m, ResponseKind.FRAME_DRAWN, drawn, "SWAP")
+            self.respond(m, ResponseKind.FRAME_DRAWN, drawn,
+                         "SWAP" if self._nodes is None else "REPORT_MERGED")
+        if self._nodes is not None:
+            self._nodes.report_merged(m, self, drawn)
         with m.State("SWAP"), m.If(self.scan_start):
             # Every pixel of the scan that begins here is fetched after this edge.
             shown = Signal.like(self._scans, name="shown")
             m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(self._scans)]
-            m.next = "REPORT_SHOWN"
+            m.next = "REPORT_SHOWN" if self._nodes is None else self._nodes.after_swap
+        if self._nodes is not None:
+            self._nodes.await_shown(m, self)
         with m.State("REPORT_SHOWN"):
-            self._respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
+            self.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
 
     def _refuse(self, m):
         """The machine does not draw: an error at boot and in answer to every command."""
         with m.State("REFUSE"):
-            self._respond(m, ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED, "REFUSED")
+            self.respond(m, ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED if self._nodes is None
+                         else self._nodes.fault(self), "REFUSED")
         with m.State("REFUSED"):
             m.d.comb += self.commands.ready.eq(1)
             with m.If(self.commands.valid):

@@ -1,7 +1,7 @@
 """A memory unit card: a share of the pixels, numbered by the backplane."""
 
 from amaranth.hdl import *
-from amaranth.lib import wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
@@ -13,7 +13,7 @@ from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
 from .tag_sweep import TagSweep
 from .two_port_memory import TwoPortMemory
-from .word_parts import PARTS
+from .word_parts import pixel_layout, word_parts
 
 __all__ = ["MemoryUnit"]
 
@@ -31,7 +31,7 @@ class MemoryUnit(wiring.Component):
     element has the port in the meantime; while the scan shows a pixel of this unit it
     goes on to the registers that drive the video bus.
 
-    Each part of a word (``PARTS``) has a tag beside it.  A part whose tag is not the current
+    Each part of a word (``word_parts``) has a tag beside it.  A part whose tag is not the current
     one reads as background: depth 2^d - 1, and the video bus is told that nothing has
     been drawn there.  A new frame is a new tag, so no word is written for it; clocks in which
     nobody asks for anything are used to take old tags out (``TagSweep``).
@@ -53,10 +53,11 @@ class MemoryUnit(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        self._parts = word_parts(configuration)
         kind = {1: OnePortMemory, 2: TwoPortMemory}[configuration.memory_ports]
         self.memory: OnePortMemory | TwoPortMemory = kind(
-            words=configuration.words, depth_bits=configuration.depth_bits,
-            tag_bits=configuration.tag_bits)
+            words=configuration.words, depth_bits=configuration.rank_bits,
+            tag_bits=configuration.tag_bits, parts=self._parts)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
@@ -71,14 +72,16 @@ class MemoryUnit(wiring.Component):
         m.submodules.increment = increment = IdIncrement(bits=self.configuration.id_bits)
         number = self.left.id
         m.d.comb += [increment.left.eq(number), self.right.id.eq(increment.right)]
+        if self.configuration.node_bits:
+            m.d.comb += self.right.node.eq(self.left.node)
 
         # The parts of the word just read that are of this frame.
-        current = Signal(len(PARTS))
+        current = Signal(len(self._parts))
         m.d.comb += current.eq(Cat(part_answer(self.memory.access, part).tag == self._tag(part)
-                                   for part in PARTS))
-        by_name = {part.name: current[place] for place, part in enumerate(PARTS)}
-        self._scan(m, number, (by_name["color_0"], by_name["color_1"]))
-        self._serve(m, number, by_name["depth"])
+                                   for part in self._parts))
+        self._scan(m, number, [current[place] for place, part in enumerate(self._parts)
+                               if part.picture is not None])
+        self._serve(m, number, current)
         self._sweep(m, current)
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
@@ -87,16 +90,18 @@ class MemoryUnit(wiring.Component):
 
     def _tag(self, part):
         """The current tag of a part."""
-        tag = getattr(self.pictures, f"{part.kind}_tag")
-        return tag if part.picture is None else tag[part.picture]
+        if part.picture is None:
+            return self.pictures.depth_tag
+        return self.pictures.color_tag[part.picture]
 
     def _scan(self, m, number, current):
-        """Fetch, read, capture, drive: one clock each; ``current`` of both colours."""
+        """Fetch, read, capture, drive: one clock each; ``current`` of both pictures."""
         m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
         m.submodules.show = show = ScanAddress(configuration=self.configuration)
         access, pictures = self.memory.access, self.pictures
         captured = Signal()
-        output = Signal.like(self.scan.video)
+        pictures_read = access.pixel if self.configuration.scans_rank else access.color
+        output = Signal(len(pictures_read[0].value))
         drawn = Signal()
         scan = wires(m, "scan_wires")
         for address, asked in ((fetch, self.scan.fetch), (show, self.scan.show)):
@@ -105,7 +110,12 @@ class MemoryUnit(wiring.Component):
                 address.x.eq(asked.x), address.y.eq(asked.y),
             ]
         shown = show.selected & drawn
-        scan.d.sync += [self.scan.drawn.eq(shown), self.scan.video.eq(Mux(shown, output, 0))]
+        color = output
+        if self.configuration.scans_rank:
+            pixel = data.View(pixel_layout(self.configuration.rank_bits), output)
+            color = pixel.color
+            scan.d.sync += self.scan.rank.eq(Mux(shown, pixel.depth, 0))
+        scan.d.sync += [self.scan.drawn.eq(shown), self.scan.video.eq(Mux(shown, color, 0))]
         scan_read = Signal()
         scan_address = Signal(self.configuration.address_bits)
         m.d.sync += [
@@ -116,31 +126,29 @@ class MemoryUnit(wiring.Component):
         m.d.comb += [access.scan.eq(scan_read), access.scan_address.eq(scan_address)]
         with m.If(captured):
             m.d.sync += [
-                output.eq(Mux(pictures.front, access.color[1].value, access.color[0].value)),
+                output.eq(Mux(pictures.front, pictures_read[1].value, pictures_read[0].value)),
                 drawn.eq(Mux(pictures.front, current[1], current[0])),
             ]
 
     def _serve(self, m, number, current):
-        """What the processing element asks for, and its answer; ``current`` of the depth."""
+        """What the processing element asks for, and its answer; ``current`` of all parts."""
         bus, onward = self.left.lines, self.right.lines
         write, read = bus.write, bus.read
         access, pictures = self.memory.access, self.pictures
         scanned = access.scan if self.configuration.memory_ports == 1 else C(0)
+        written = self._pixel_in(write) if self.configuration.scans_rank else self._parts_in(write)
+        valid, value = self._depth_read(current)
         write_here = Signal()
         read_here = Signal()
         answered = Signal()
-        answer = Signal(self.configuration.depth_bits)
+        answer = Signal(self.configuration.rank_bits)
         wires(m, "line_wires").d.comb += [onward.write.eq(write), onward.read.eq(read)]
         m.d.comb += [
             write_here.eq(write.valid & (write.unit == number)),
             access.write.eq(write_here),
             access.back.eq(~pictures.front),
             access.write_address.eq(write.address),
-            access.depth_in.value.eq(write.depth),
-            access.depth_in.tag.eq(pictures.depth_tag),
-            access.color_in.value.eq(write.color),
-            access.color_in.tag.eq(
-                Mux(pictures.front, pictures.color_tag[0], pictures.color_tag[1])),
+            *written,
             bus.write_busy.eq(onward.write_busy | (write_here & access.write_busy)),
             bus.scanned.eq(onward.scanned | Mux(scanned, Mux(number[0], 2, 1), 0)),
 
@@ -148,15 +156,44 @@ class MemoryUnit(wiring.Component):
             access.read.eq(read_here),
             access.read_address.eq(read.address),
             bus.read_busy.eq(onward.read_busy | (read_here & access.read_busy)),
-            answer.eq(Mux(current, access.depth.value, self.configuration.depth_background)),
+            answer.eq(Mux(valid, value, self.configuration.rank_background)),
             bus.read_data.eq(onward.read_data | Mux(answered, answer, 0)),
         ]
         m.d.sync += answered.eq(read_here & ~access.read_busy)
 
+    def _parts_in(self, write):
+        """What is written: depth and back colour."""
+        access, pictures = self.memory.access, self.pictures
+        return [
+            access.depth_in.value.eq(write.depth),
+            access.depth_in.tag.eq(pictures.depth_tag),
+            access.color_in.value.eq(write.color),
+            access.color_in.tag.eq(
+                Mux(pictures.front, pictures.color_tag[0], pictures.color_tag[1])),
+        ]
+
+    def _pixel_in(self, write):
+        """What is written where both are one part."""
+        access = self.memory.access
+        return [
+            access.pixel_in.value.eq(Cat(write.depth, write.color)),  # as in ``pixel_layout``
+            access.pixel_in.tag.eq(self.pictures.depth_tag),
+        ]
+
+    def _depth_read(self, current):
+        """Whether the depth that was read is of this frame, and the depth."""
+        access, front = self.memory.access, self.pictures.front
+        if not self.configuration.scans_rank:
+            [place] = [place for place, part in enumerate(self._parts) if part.kind == "depth"]
+            return current[place], access.depth.value
+        back = Mux(front, access.pixel[0].value, access.pixel[1].value)
+        return (Mux(front, current[0], current[1]),
+                data.View(pixel_layout(self.configuration.rank_bits), back).depth)
+
     def _sweep(self, m, current):
         """Take old tags out; ``current`` of all parts."""
         m.submodules.tag_sweep = sweep = TagSweep(words=self.configuration.words,
-                                                  parts=len(PARTS))
+                                                  parts=len(self._parts))
         access, pictures = self.memory.access, self.pictures
         m.d.comb += [
             sweep.start.eq(pictures.sweep),
@@ -167,7 +204,7 @@ class MemoryUnit(wiring.Component):
             access.sweep_address.eq(sweep.address),
             sweep.busy.eq(access.sweep_busy),
             sweep.scan.eq(access.scan),
-            sweep.stale.eq(Cat(part_answer(access, part).tag.any() for part in PARTS)
+            sweep.stale.eq(Cat(part_answer(access, part).tag.any() for part in self._parts)
                            & ~current),
         ]
         near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0

@@ -4,8 +4,15 @@ from amaranth.hdl import *
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In
 
-from .memory_access import MemoryAccess, part_answer, part_chosen, part_written
-from .word_parts import PARTS
+from .memory_access import (
+    MemoryAccess,
+    part_address,
+    part_answer,
+    part_asked,
+    part_chosen,
+    part_written,
+)
+from .word_parts import PARTS, Part
 
 __all__ = ["TwoPortMemory"]
 
@@ -35,15 +42,17 @@ class TwoPortMemory(wiring.Component):
 
     latency = 1
 
-    def __init__(self, *, words: int, depth_bits: int, tag_bits: int):
-        access = MemoryAccess(words=words, depth_bits=depth_bits, tag_bits=tag_bits)
+    def __init__(self, *, words: int, depth_bits: int, tag_bits: int,
+                 parts: tuple[Part, ...] = PARTS):
+        access = MemoryAccess(words=words, depth_bits=depth_bits, tag_bits=tag_bits, parts=parts)
+        self.parts = parts
         self.words = words
         self.depth_bits = depth_bits
         self.tag_bits = tag_bits
         # `no_rw_check` spares the logic that would make a read beside a write see the old word.
         self.storages = [memory.Memory(shape=access.members[f"{part.kind}_in"].shape, depth=words,
                                        init=[], attrs={"no_rw_check": 1})
-                         for part in PARTS]
+                         for part in parts]
         super().__init__({"access": In(access)})
 
     def elaborate(self, platform):
@@ -55,11 +64,10 @@ class TwoPortMemory(wiring.Component):
         m.d.comb += erase.eq(Mux(access.sweep_busy, 0, access.erase))
 
         answers = []
-        for place, (part, storage) in enumerate(zip(PARTS, self.storages, strict=True)):
+        for place, (part, storage) in enumerate(zip(self.parts, self.storages, strict=True)):
             m.submodules[part.name] = storage
             write, read = storage.write_port(), storage.read_port()
-            asked = getattr(access, part.reader)
-            address = getattr(access, f"{part.reader}_address")
+            asked, address = part_asked(access, part), part_address(access, part)
             written = part_written(access, part)
             m.d.comb += [
                 read.addr.eq(Mux(asked, address, access.sweep_address)),
@@ -73,5 +81,5 @@ class TwoPortMemory(wiring.Component):
             answers.append(read.data)
 
         m.d.comb += [part_answer(access, part).eq(answer)
-                     for part, answer in zip(PARTS, answers, strict=True)]
+                     for part, answer in zip(self.parts, answers, strict=True)]
         return m

@@ -6,9 +6,11 @@ from typing import Literal
 from amaranth.hdl import *
 from amaranth.lib import data
 
+from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import COLOR_BITS
 
-__all__ = ["PARTS", "Part", "part_layout", "value_bits"]
+__all__ = ["PARTS", "PICTURE_PARTS", "Part", "part_layout", "pixel_layout", "value_bits",
+           "word_parts"]
 
 
 @dataclass(frozen=True)
@@ -17,14 +19,15 @@ class Part:
 
     ``name``    of the part, and of its RAM where each part has one
     ``kind``    what the value is; a write brings one value of each kind (``MemoryAccess``)
-    ``reader``  who reads it besides the sweep, as in ``MemoryAccess``
+    ``reader``  who reads it besides the sweep, as in ``MemoryAccess``; ``either``: whoever has
+                its picture, the scan the front one
     ``picture`` which of the two pictures it belongs to: it is written while that is the back one;
                 None is for parts that every write writes
     """
 
     name: str
-    kind: Literal["depth", "color"]
-    reader: Literal["read", "scan"]
+    kind: Literal["depth", "color", "pixel"]
+    reader: Literal["read", "scan", "either"]
     picture: int | None = None
 
 
@@ -37,9 +40,27 @@ PARTS = (
 )
 
 
-def value_bits(*, depth_bits: int) -> dict[str, int]:
-    """Kind of value → its bits, in the order in which ``PARTS`` first has them."""
-    return {"depth": depth_bits, "color": COLOR_BITS}
+#: Where the scan merges: the picture shown still has its depths, and one tag is for both.
+PICTURE_PARTS = (
+    Part("picture_0", "pixel", "either", picture=0),
+    Part("picture_1", "pixel", "either", picture=1),
+)
+
+
+def word_parts(configuration: MachineConfiguration) -> tuple[Part, ...]:
+    """The parts of the words of a machine's memory units."""
+    return PICTURE_PARTS if configuration.scans_rank else PARTS
+
+
+def pixel_layout(depth_bits: int) -> data.StructLayout:
+    """What a picture has of a pixel, where depth and colour are one part."""
+    return data.StructLayout({"depth": depth_bits, "color": COLOR_BITS})
+
+
+def value_bits(parts: tuple[Part, ...], *, depth_bits: int) -> dict[str, int]:
+    """Kind of value → its bits, in the order in which ``parts`` first has them."""
+    bits = {"depth": depth_bits, "color": COLOR_BITS, "pixel": pixel_layout(depth_bits).size}
+    return {part.kind: bits[part.kind] for part in parts}
 
 
 def part_layout(bits: int, tag_bits: int) -> data.StructLayout:

@@ -87,9 +87,10 @@ class BroadcastQueue(wiring.Component):
         kept = Signal(outline_layout(configuration), reset_less=True)
         kept_row = Signal(row_shape(configuration), reset_less=True)
         second_row = Signal(row_shape(configuration), reset_less=True)
-        # The interpolants are the last field of a triangle: without them the rest is its start.
+        # The interpolants follow on the outline, and after them only the node, which is this one.
         outline = Value.cast(packet.body)[:outline_layout(configuration).size]
-        assert len(outline) + planes_layout(configuration).size == triangle.shape().size
+        assert (len(outline) + planes_layout(configuration).size + configuration.node_bits
+                == triangle.shape().size)
 
         arrived = Signal()
         waits = Signal()

@@ -26,6 +26,9 @@ class ProcessingElementControl(wiring.Component):
     Parameters
     ----------
     id_bits, depth_bits: int, positive
+        As of ``MemoryBus``.
+    order_bits: int
+        The low bits of a depth word that are no depth, and not reported.
 
     Members
     -------
@@ -56,12 +59,15 @@ class ProcessingElementControl(wiring.Component):
     not positive.
     """
 
-    def __init__(self, *, id_bits: int, depth_bits: int):
+    def __init__(self, *, id_bits: int, depth_bits: int, order_bits: int = 0):
         for name, bits in (("id_bits", id_bits), ("depth_bits", depth_bits)):
             if bits < 1:
                 raise ValueError(f"{name} must be positive, not {bits!r}")
+        if not 0 <= order_bits < depth_bits:
+            raise ValueError(f"order_bits must be 0 to {depth_bits - 1}, not {order_bits!r}")
         self.id_bits = id_bits
         self.depth_bits = depth_bits
+        self.order_bits = order_bits
         super().__init__({
             "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "drawing": In(1),
@@ -78,6 +84,10 @@ class ProcessingElementControl(wiring.Component):
             "responses": Out(stream.Signature(response_layout())),
             "idle": Out(1),
         })
+
+    @property
+    def _depth(self):
+        return self.depths.payload[self.order_bits:] if self.order_bits else self.depths.payload
 
     def elaborate(self, platform):
         m = Module()
@@ -135,6 +145,6 @@ class ProcessingElementControl(wiring.Component):
         values = [Mux(now, value, 0) for now, value in reports.values()]
         m.d.comb += [
             response.kind.eq(reduce(or_, kinds)),
-            response.value.eq(reduce(or_, values) | self.depths.payload),
+response.value.eq(reduce(or_, values) | self._depth),
         ]
         return m

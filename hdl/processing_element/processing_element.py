@@ -69,7 +69,8 @@ class ProcessingElement(wiring.Component):
                            if configuration.memory_ports == 1 else TwoPortDepthTest(**bits))
         self._queue = BroadcastQueue(configuration=configuration)
         self._control = ProcessingElementControl(id_bits=configuration.id_bits,
-                                                 depth_bits=configuration.depth_bits)
+                                                 depth_bits=configuration.rank_bits,
+                                                 order_bits=configuration.order_bits)
         self._rasteriser = TriangleSpans(configuration=configuration)
         self._spans = fifo.SyncFIFO(width=span_layout(configuration).size, depth=SPANS_WAITING)
         self._stepper = FragmentStepper(configuration=configuration)
@@ -158,6 +159,8 @@ class ProcessingElement(wiring.Component):
 
     def _connect_domain(self, m):
         """First unit from the ID lines, upper end from the survey."""
+        if self.configuration.node_bits:
+            m.d.comb += self.right.node.eq(self.left.node)
         rasteriser, interpolator, picture = self._rasteriser, self._interpolator, self._picture
         survey, read_back, control = self._survey, self._read_back, self._control
         first, end = self.left.id, survey.end

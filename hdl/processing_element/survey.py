@@ -61,7 +61,7 @@ class Survey(wiring.Component):
         answered = Signal()
         m.d.comb += [
             # 1010…: neither this nor its complement is what a silent bus reads.
-            pattern.eq(Const(0xAAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
+            pattern.eq(Const(0xAAAA_AAAA_AAAA_AAAA, depth_bits) ^ second.replicate(depth_bits)),
             memory.write.unit.eq(self.end),
             memory.read.unit.eq(self.end),
             memory.write.depth.eq(pattern),

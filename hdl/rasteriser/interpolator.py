@@ -109,10 +109,16 @@ class Interpolator(wiring.Component):
             m.d.sync += [
                 fragment.unit.eq(address.unit),
                 fragment.address.eq(address.address),
-                fragment.depth.eq(depth),
+                fragment.depth.eq(self._rank(m, depth, planes, sums, move)),
                 fragment.color.eq(Cat(color)),
             ]
         return m
+
+    def _rank(self, m, depth, planes, moves, move):
+        """Depth, and below it the order, where pixels keep one."""
+        if not self.configuration.order_bits:
+            return depth
+        return Cat(delayed(m, planes.round, moves, "round", enable=move), depth)
 
     def _value(self, m, plane, pixel, move, name):
         """The interpolant at the pixel, four moves later: products, then sums of two numbers."""

@@ -13,7 +13,7 @@ from ..arithmetic.pipelined_multiplier import PipelinedMultiplier
 from ..backplane.words import struct_layout
 from .pixel_box import PixelBox, box_layout
 from .sampling_grid import grid_layout
-from .vertex_sort import VertexSort, interpolants
+from .vertex_sort import VertexSort, interpolants, share_member
 
 __all__ = ["TriangleOutline", "sorted_triangle_layout"]
 
@@ -30,6 +30,7 @@ def sorted_triangle_layout(configuration: MachineConfiguration) -> data.StructLa
     ``values``                 for each interpolant ``upper``, the value there, and the rises from
                                there to the two others, ``first`` and ``second`` clockwise
     ``color``                  where nothing but depth is interpolated
+    ``share``                  round and node, of a machine that wants them
     """
     bits = configuration.coordinate_bits
     values = {name: data.StructLayout({"upper": value, "first": signed(value + 1),
@@ -45,6 +46,7 @@ def sorted_triangle_layout(configuration: MachineConfiguration) -> data.StructLa
         "lower_x": signed(bits + 1), "lower_y": bits,
         "values": data.StructLayout(values),
         "color": COLOR_BITS if configuration.shading == "flat" else 0,
+        **share_member(configuration),
     })
 
 
@@ -117,6 +119,8 @@ class TriangleOutline(wiring.Component):
         outline = Signal(layout, reset_less=True)
         m.d.sync += [outline.x.eq(upper.x), outline.y.eq(upper.y),
                      outline.color.eq(sort.vertices.color)]
+        m.d.sync += [outline[name].eq(sort.vertices[name])
+                     for name in share_member(self.configuration)]
         for axis in "xy":
             m.d.sync += [outline[f"{name}_{axis}"].eq(vertex[axis] - upper[axis])
                          for name, vertex in (("middle", middle), ("lower", lower))]

@@ -17,7 +17,7 @@ from .outline import TriangleOutline, sorted_triangle_layout
 from .plane_setup import PlaneSetup, Slot
 from .result_queue import ResultQueue
 from .sampling_grid import SamplingGrid
-from .vertex_sort import interpolants
+from .vertex_sort import interpolants, share_member
 
 __all__ = ["TriangleSetup"]
 
@@ -218,6 +218,10 @@ class TriangleSetup(wiring.Component):
             m.d.sync += [getattr(plane, part).eq(outline.values[name][part])
                          for part in ("upper", "first", "second")]
 
+    def _share(self, triangle):
+        """Where round and node are, in that order."""
+        return [*([triangle.planes.round] if self.configuration.order_bits else []), triangle.node]
+
     def _collect(self, m, outline, enter, pop):
         """Queues of all results; when each has its part they are popped into the output register.
 
@@ -226,16 +230,19 @@ class TriangleSetup(wiring.Component):
         """
         triangle = Signal(self.triangles.payload.shape())
         head = data.StructLayout({"box": outline.box.shape(), "clockwise": 1,
-                                  "color": outline.color.shape()})
+                                  "color": outline.color.shape(),
+                                  **share_member(self.configuration)})
         m.submodules.head_queue = heads = fifo.SyncFIFOBuffered(width=head.size, depth=self.depth)
         popped = data.View(head, heads.r_data)
         m.d.comb += [
             heads.w_en.eq(enter),
-            heads.w_data.eq(Cat(outline.box, outline.clockwise, outline.color)),
+            heads.w_data.eq(Cat(outline[name] for name in head.members)),
             heads.r_en.eq(pop),
             triangle.long_edge_left.eq(popped.clockwise),
         ]
         m.d.comb += [triangle[name].eq(popped.box[name]) for name in popped.box.shape().members]
+        if share_member(self.configuration):
+            m.d.comb += Cat(self._share(triangle)).eq(popped.share)
         for place, channel in enumerate(commands.CHANNELS):
             if channel not in self._planes:
                 m.d.comb += triangle.planes[channel].eq(

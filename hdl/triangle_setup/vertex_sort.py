@@ -10,7 +10,7 @@ from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.words import struct_layout
 
-__all__ = ["VertexSort", "interpolants", "sorted_vertices_layout"]
+__all__ = ["VertexSort", "interpolants", "share_member", "sorted_vertices_layout"]
 
 
 def interpolants(configuration: MachineConfiguration) -> dict[str, int]:
@@ -24,12 +24,20 @@ def sorted_vertices_layout(configuration: MachineConfiguration) -> data.StructLa
 
     ``least_x``, ``greatest_x``  of the three
     ``color``                    vertex 0's, where nothing but depth is interpolated
+    ``share``                    round and node, of a machine that wants them
     """
     coordinate = signed(configuration.coordinate_bits)
     vertex = data.StructLayout({"x": coordinate, "y": coordinate, **interpolants(configuration)})
     flat = COLOR_BITS if configuration.shading == "flat" else 0
     return data.StructLayout({"upper": vertex, "middle": vertex, "lower": vertex,
-                              "least_x": coordinate, "greatest_x": coordinate, "color": flat})
+                              "least_x": coordinate, "greatest_x": coordinate, "color": flat,
+                              **share_member(configuration)})
+
+
+def share_member(configuration: MachineConfiguration) -> dict[str, int]:
+    """What passes with a triangle through set-up, where merge cards end nodes: round and node."""
+    bits = configuration.share_of_list_bits
+    return {"share": bits} if bits else {}
 
 
 class VertexSort(wiring.Component):
@@ -86,4 +94,8 @@ class VertexSort(wiring.Component):
         if self.configuration.shading == "flat":
             color = Cat(given[0][name] for name in commands.CHANNELS)
             m.d.comb += self.vertices.color.eq(delayed(m, color, self.latency, "color"))
+        if share_member(self.configuration):
+            share = Cat(self.triangle[name] for name in ("round", "node")
+                        if name in self.triangle.shape().members)
+            m.d.comb += self.vertices.share.eq(delayed(m, share, self.latency, "share"))
         return m

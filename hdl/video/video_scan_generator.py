@@ -1,13 +1,15 @@
 """The video scan generator: addresses out, pixels back, sync to the screen."""
 
 from amaranth.hdl import *
-from amaranth.lib import wiring
+from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.connectors import ScanLines
+from ..backplane.scan_chain import scanned_pixel_layout
+from .scan_read_back import ScanReadBack
 
 __all__ = ["VideoPins", "VideoScanGenerator"]
 
@@ -58,6 +60,16 @@ class VideoScanGenerator(wiring.Component):
         High for one clock when a scan begins, with its vertical sync; at least a line before
         its first fetch.
     pins: Out(VideoPins)
+
+    Where pictures are merged as they are scanned, the pixels pass through the merge cards, and
+    what is on the pins is what comes back from the last one:
+
+    first: Out(scanned_pixel_layout)
+        What the first merge card compares with: background, and sync.
+    last: In(scanned_pixel_layout)
+        It is on the pins in the same clock.
+    read_back: In(1), read_back_done: Out(1), depths: Out(stream of depth_bits)
+        ``start``, ``done`` and ``depths`` of ``ScanReadBack``.
     """
 
     #: Clocks from the announcement to when it is shown, on to the video bus, and to the pins.
@@ -72,7 +84,18 @@ class VideoScanGenerator(wiring.Component):
             "background": In(COLOR_BITS),
             "start": Out(1),
             "pins": Out(VideoPins()),
+            **(self._chain_members() if configuration.scans_rank else {}),
         })
+
+    def _chain_members(self):
+        pixel = scanned_pixel_layout(self.configuration)
+        return {
+            "first": Out(pixel),
+            "last": In(pixel),
+            "read_back": In(1),
+            "read_back_done": Out(1),
+            "depths": Out(stream.Signature(self.configuration.depth_bits)),
+        }
 
     def elaborate(self, platform):
         m = Module()
@@ -113,6 +136,13 @@ class VideoScanGenerator(wiring.Component):
             return delayed(m, signal, self.bus_latency, name, reset_less=False)
 
         on_bus = when_on_bus(active, "active")
+        if self.configuration.scans_rank:
+            m.d.comb += scan.show.eq(
+                delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
+            self._chain(m, begin=when_on_bus(pixel, "pixel"), active=on_bus,
+                        horizontal_sync=when_on_bus(horizontal_sync, "horizontal_sync"),
+                        vertical_sync=when_on_bus(vertical_sync, "vertical_sync"))
+            return m
         color = Mux(scan.drawn, scan.video, self.background)
         m.d.comb += scan.show.eq(
             delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
@@ -124,3 +154,21 @@ class VideoScanGenerator(wiring.Component):
             Cat(pins.red, pins.green, pins.blue).eq(Mux(on_bus, color, 0)),
         ]
         return m
+
+    def _chain(self, m, **begins):
+        """The pixels to the first merge card, and from the last one; ``begins``: what they have."""
+        m.submodules.read_back = read_back = ScanReadBack(configuration=self.configuration)
+        first, last, pins = self.first, self.last, self.pins
+        m.d.comb += [first[name].eq(value) for name, value in begins.items()]
+        m.d.comb += [
+            first.rank.eq(self.configuration.rank_background),
+            first.color.eq(Mux(begins["active"], self.background, 0)),
+            pins.pixel.eq(last.begin),
+            *(getattr(pins, name).eq(last[name])
+              for name in ("active", "horizontal_sync", "vertical_sync")),
+            Cat(pins.red, pins.green, pins.blue).eq(last.color),
+            read_back.pixel.eq(last),
+            read_back.start.eq(self.read_back),
+            self.read_back_done.eq(read_back.done),
+        ]
+        wiring.connect(m, wiring.flipped(self.depths), read_back.depths)

@@ -75,12 +75,11 @@ class _Run:
     def _scramble(self, ctx: Any) -> None:
         """Every memory word random, as after power-on."""
         source = random.Random(self.job.memory_seed)
-        for storage in (storage for unit in self.machine.memory_units
-                        for storage in unit.memory.storages):
+        for storage in self.machine.storages:
             words = storage.data
             width = Shape.cast(words.shape).width
             for address in range(words.depth):
-                ctx.set(words[address], words.shape.from_bits(source.getrandbits(width)))
+                ctx.set(Value.cast(words[address]), source.getrandbits(width))
 
     async def _bench(self, ctx: Any) -> None:
         """Host and screen in one loop over the clocks: several benches would cost more time."""

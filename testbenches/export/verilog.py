@@ -22,7 +22,7 @@ from amaranth.hdl import (
 from amaranth.lib import memory, wiring
 
 from ...golden.specification.configuration import MachineConfiguration
-from ...hdl.machine import BOARDS, Machine
+from ...hdl.machine import Machine, boards_of
 from .plain_netlist import plain_netlist
 
 __all__ = [
@@ -187,7 +187,7 @@ def machine_verilog(configuration: MachineConfiguration) -> str:
     Each kind of board is one module, in the order of ``hdl.machine.BOARDS``, however many slots
     hold one, and so is each memory.
     """
-    boards = {name: board(configuration=configuration) for name, board in BOARDS.items()}
+    boards = {name: board(configuration=configuration) for name, board in boards_of(configuration).items()}
     return _translated({"machine": _MachineOfInstances(configuration, boards), **boards})
 
 

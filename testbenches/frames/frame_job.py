@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
@@ -19,25 +22,47 @@ from .conversation import responses_owed
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
                    fraction_bits: int | None = None) -> list[int]:
-    """Frame start, triangles, frame end.
+    """Frame start, triangles, frame end; where nodes have list memories, these are loaded first,
+    and drawn in the triangles' place.
 
+    Triangles come in the order in which nodes share them.
     Where the machine has no set-up of its own the host does it here, at the resolution that the
     machine reports.  With ``fraction_bits``, fewer than the machine's, the host does it with planes
     rounded to these: the machine then draws the picture of one that has no more, value for value
     and clock for clock, if its words have the integer bits for the greater error.  Raises
     ``InputError`` for a list that is too wide for the machine.
     """
-    fitting = fitted(configuration, display_list)
+    triangles = _triangle_words(configuration, display_list, fraction_bits)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
+    if not configuration.list_words:
+        return [start, *triangles, end]
+    clear, draw = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.DRAW_LISTS))
+    loads = [commands.with_opcode(word, Opcode.LOAD) for word in triangles]
+    return [clear, *loads, start, draw, end]
+
+
+def _triangle_words(configuration: MachineConfiguration, display_list: DisplayList,
+                    fraction_bits: int | None) -> Sequence[int]:
+    """A command for each triangle, in the order in which the host sends them."""
+    fitting = fitted(configuration, display_list)
+    shares = organisation_of(configuration).shares(display_list.triangles)
+    share = ({"node": shares.node, "round": shares.round} if configuration.node_bits
+             else triangle_words.NO_SHARE)
     if configuration.setup == "hardware" and fraction_bits is None:
-        return [start, *triangle_words.triangles(configuration, fitting), end]
+        words = triangle_words.triangles(configuration, fitting, share)
+        return list(words[shares.host_order])
     own = configuration.fraction_bits
     prepared = prepare(fitting,
                        fraction_bits=own if fraction_bits is None else fraction_bits,
                        shading=configuration.shading,
                        **organisation_of(configuration).resolution.shifts)
     prepared = in_finer_words(prepared, own)
-    return [start, *triangle_words.prepared_triangles(configuration, prepared), end]
+    words = triangle_words.prepared_triangles(configuration, prepared, share)
+    if not configuration.node_bits:
+        return list(words)
+    place = np.empty(display_list.triangles, np.int64)
+    place[shares.host_order] = np.arange(display_list.triangles)
+    return list(words[np.argsort(place[prepared.primitive])])
 
 
 def frame_job(

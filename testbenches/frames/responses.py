@@ -26,8 +26,12 @@ class MachineError(RuntimeError):
 
 @dataclass(frozen=True)
 class Work:
-    """What one processing element owns and did for the last frame, in its own count."""
+    """What one processing element owns and did for the last frame, in its own count.
 
+    ``first_unit``  in its node
+    """
+
+    node: int
     first_unit: int
     units: int
     fragments: int
@@ -46,6 +50,8 @@ class Simulation:
     ``owned``, ``total`` memory units in some domain, memory units in the cage
     ``boot_cycles``      reset to ready
     ``draw_cycles``      frame start to the last processing element's done
+    ``merge_cycles``     frame start to the merged picture; None where merge cards end no nodes
+    ``sent``             pixels that each node's merge card sent, in its own count
     ``repeated_scans``   scans that began with the old picture since the frame start
     ``scans``            every whole scan, in order
     ``activity``         what the processing elements did meanwhile; None where nothing tells
@@ -67,6 +73,8 @@ class Simulation:
     build_seconds: float = 0.0
     notes: tuple[str, ...] = ()
     activity: ActivityRecord | None = None
+    merge_cycles: int | None = None
+    sent: Sequence[int] = ()
 
 
 class Answers:
@@ -76,6 +84,7 @@ class Answers:
     ``frames``     how many were drawn
     ``fragments``  int64 (readings, elements): since each reading's frame start
     ``busy``       int64 (readings, elements): cycles, likewise
+    ``sent``       int64 (readings, nodes): pixels, of cages whose merge cards send any
 
     Raises ``MachineError`` where the machine reports a fault, or a resolution that is not the
     configuration's.
@@ -101,6 +110,8 @@ class Answers:
         self.fragments, self.busy = (
             np.array(self._values[kind], np.int64).reshape(-1, len(self._domains))
             for kind in (ResponseKind.FRAGMENTS, ResponseKind.BUSY))
+        sent = self._values[ResponseKind.SENT]
+        self.sent = np.array(sent, np.int64).reshape(len(self.fragments), -1)
 
     def _fields(self, kind: ResponseKind) -> list[dict[str, int]]:
         return [response_fields(kind, value) for value in self._values[kind]]
@@ -120,9 +131,12 @@ class Answers:
             depth=organisation.depth_image(
                 self._values[ResponseKind.DEPTH][words * number:words * (number + 1)]),
             resolution=self._resolution,
-            work=[Work(domain["first"], domain["units"], int(fragments), int(busy))
-                  for domain, fragments, busy in zip(
-                      self._domains, self.fragments[reading], self.busy[reading], strict=True)],
+            work=[Work(node, domain["first"], domain["units"], int(fragments), int(busy))
+                  for (node, *_), domain, fragments, busy in zip(
+                      organisation.domains, self._domains, self.fragments[reading],
+                      self.busy[reading], strict=True)],
+            merge_cycles=self._values[ResponseKind.MERGED][number] if organisation.merges else None,
+            sent=[int(pixels) for pixels in self.sent[reading]],
             owned=units["owned"],
             total=units["total"],
             boot_cycles=self._values[ResponseKind.BOOTED][0],

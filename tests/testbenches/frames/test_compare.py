@@ -27,7 +27,7 @@ def frame(configuration, picture) -> Simulation:
     """What a machine that draws ``picture`` would hand back."""
     return Simulation(
         video=expected_video(configuration, picture.color).copy(), depth=picture.depth.copy(),
-        resolution=picture.depth.shape[::-1], work=[Work(0, 1, 10, 20)], owned=1, total=1,
+        resolution=picture.depth.shape[::-1], work=[Work(0, 0, 1, 10, 20)], owned=1, total=1,
         boot_cycles=1, draw_cycles=2, repeated_scans=0, scans=[], engine="none", cycles=3,
         seconds=1.0)
 

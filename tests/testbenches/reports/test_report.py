@@ -220,7 +220,7 @@ def test_the_timeline_shows_who_did_what_when():
 
 @pytest.mark.parametrize("elements", [1, 3, 100])
 def test_chart(elements):
-    svg = work_chart([Work(unit, 1, 1000 * unit, 2000 * unit) for unit in range(elements)])
+    svg = work_chart([Work(0, unit, 1, 1000 * unit, 2000 * unit) for unit in range(elements)])
     Page(svg)
     assert svg.startswith("<svg") and svg.endswith("</svg>")
     assert "http" not in svg

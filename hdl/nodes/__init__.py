@@ -1,0 +1,1 @@
+"""Merge cards: what ends a node, has its number, and passes on its share of the triangles."""
