@@ -151,7 +151,7 @@ class Machine(wiring.Component):
         if self.configuration.merge is None:
             self._connect_lines_to_all(m, total=left.right.id)
         else:
-            connect_nodes(m, controller, generator, self.nodes)
+            connect_nodes(m, self.configuration, controller, generator, self.nodes)
         if self.configuration.observe:
             self._observe(m)
         return m

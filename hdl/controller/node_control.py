@@ -13,7 +13,7 @@ __all__ = ["NodeControl"]
 
 
 class NodeControl:
-    """Adds up the nodes at boot, has lists loaded and drawn, waits for merging, reads merged depths.
+    """Adds up the nodes at boot, has lists loaded and drawn, and reads merged depths.
 
     This is no component: it adds members, signals and states to the controller that has it, so
     that a controller without nodes stays as it is.

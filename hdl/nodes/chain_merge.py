@@ -1,7 +1,6 @@
 """The merge card C: while the screen is scanned it passes on the nearer pixel."""
 
 from amaranth.hdl import *
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.commands import RESPONSE_VALUE_BITS

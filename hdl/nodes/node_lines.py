@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from functools import reduce
+from itertools import pairwise
 from operator import or_
 from typing import NamedTuple
 
 from amaranth.hdl import *
 
+from ...golden.specification.configuration import MachineConfiguration
 from ..lines_to_all import connect_broadcast, connect_pictures, connect_scan
 from ..wires import wires
 from .merge_card import MergeCard
@@ -22,7 +24,8 @@ class Node(NamedTuple):
     merge_card: MergeCard
 
 
-def connect_nodes(m: Module, controller, generator, nodes: Sequence[Node]) -> None:
+def connect_nodes(m: Module, configuration: MachineConfiguration, controller, generator,
+                  nodes: Sequence[Node]) -> None:
     """Everything between controller, scan generator and ``nodes``, from left to right."""
     cards = [node.merge_card for node in nodes]
     fixed = wires(m, "total_wires")
@@ -35,7 +38,7 @@ def connect_nodes(m: Module, controller, generator, nodes: Sequence[Node]) -> No
         fixed.d.comb += [board.total.eq(node.merge_card.left.id) for board in boards]
         connect_broadcast(wires(m, f"node_{number}_broadcast_wires"), node.merge_card.own,
                           [element.broadcast for element in node.processing_elements])
-    if controller.configuration.list_words:
+    if configuration.list_words:
         fixed.d.comb += controller.lists_full.eq(reduce(or_, (card.lists_full for card in cards)))
     _connect_chain(m, controller, generator, nodes)
 
@@ -67,6 +70,6 @@ def _connect_chain(m, controller, generator, nodes):
     for number, node in enumerate(nodes):
         connect_scan(wires(m, f"node_{number}_scan_wires"), node.merge_card.scan,
                      node.memory_units)
-    for left, right in zip(cards, cards[1:], strict=False):
+    for left, right in pairwise(cards):
         scan.d.comb += [getattr(right.scan_left, name).eq(getattr(left.scan_right, name))
                         for name in ("fetch", "show", "front", "pixel")]

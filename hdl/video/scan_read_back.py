@@ -17,9 +17,9 @@ class ScanReadBack(wiring.Component):
     """Takes the depth of each pixel of the picture once, in the order of the scan.
 
     Where pictures are merged as they are scanned, nowhere else is the merged depth.  A pixel that
-    passes while ``DEPTHS_WAITING`` are still on offer is taken in the next scan: so it takes the rest of
-    a scan and a whole one at most where the host takes each word before the next pixel, and
-    else as many more as it has to.
+    passes while ``DEPTHS_WAITING`` are still on offer is taken in the next scan.  So it takes the
+    rest of a scan and a whole one where the host is not slower than the pixels come, and as many
+    scans more as it has to where the host is slower.
 
     Latency: two clocks from a pixel to its word.  Throughput: a pixel of every pixel time.
 

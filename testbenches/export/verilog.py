@@ -187,7 +187,8 @@ def machine_verilog(configuration: MachineConfiguration) -> str:
     Each kind of board is one module, in the order of ``hdl.machine.BOARDS``, however many slots
     hold one, and so is each memory.
     """
-    boards = {name: board(configuration=configuration) for name, board in boards_of(configuration).items()}
+    boards = {name: board(configuration=configuration)
+              for name, board in boards_of(configuration).items()}
     return _translated({"machine": _MachineOfInstances(configuration, boards), **boards})
 
 
