@@ -11,7 +11,12 @@ from ..golden.planning.machine_plan import plan
 from ..golden.planning.presets import PRESETS
 from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
 from ..golden.scene_display_list import SceneDisplayList, make_display_list
-from ..golden.specification.configuration import MAXIMUM_SETUP_INTERVAL, MachineConfiguration
+from ..golden.specification.card_order import merge_card, parse_cards
+from ..golden.specification.configuration import (
+    MAXIMUM_SETUP_INTERVAL,
+    MachineConfiguration,
+    Packet,
+)
 from ..golden.specification.errors import InputError
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
 
@@ -48,6 +53,9 @@ class MachineOptions:
     ``skew``              units of a processing element alternate along its rows, too
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
+    ``packet``            triangles of a packet for each node, or ``"contiguous"``
+    ``retain``            nodes have list memories, as large as the scene needs
+    ``list_words``        nodes have list memories of so many triangles
     """
 
     preset: str | None = None
@@ -62,6 +70,9 @@ class MachineOptions:
     block: int | None = None
     skew: bool | None = None
     setup: SetupChoice | None = None
+    packet: Packet | None = None
+    retain: bool | None = None
+    list_words: int | None = None
 
     def machine(self) -> dict[str, Any]:
         """Fields of ``MachineConfiguration`` that are settled; fraction bits None are exact ones.
@@ -80,6 +91,9 @@ class MachineOptions:
             settled["fraction_bits"] = None  # in place of the preset's
         if self.setup is not None:
             settled |= SETUPS[self.setup]
+        if self.retain and merge_card(parse_cards(settled["cards"])) is None:
+            raise InputError(f"--retain: {settled['cards']} has no merge card, and so no list "
+                             "memory; end its nodes with merge cards, as in 2x(PMMC)")
         if self.shading != "auto":
             settled["shading"] = self.shading
         if self.size is not None:
@@ -91,7 +105,8 @@ class MachineOptions:
         Raises ``InputError``."""
         settled = {name: value for name, value in self.machine().items()
                    if name not in ("width", "height")}
-        return settled | {"max_error": self.max_error or 0}
+        return settled | {"max_error": self.max_error or 0,
+                          "retain": bool(self.retain) and self.list_words is None}
 
 
 #: What is asked for by the name of a field of the configuration, and means it.
@@ -121,6 +136,9 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     """The machine for any scene of that size: exact for every triangle on the screen, or as exact
     as asked for, unless the options or the preset give the fraction bits.  Raises ``InputError``.
     """
+    if options.retain and options.list_words is None:
+        raise InputError("--retain: without a scene nobody knows how many triangles its lists hold; "
+                         "give --list-words, or a scene")
     machine = MachineConfiguration(**DEFAULT_SIZE | options.machine())
     if not options.max_error:
         return machine

@@ -62,6 +62,19 @@ class CentralBroadcastController(wiring.Component):
         The background of the picture shown: red in the low byte, then green, blue.
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
+    nodes: In(node_bits)
+        How many nodes there are, from the right end of the node lines; only where merge cards end
+        nodes.
+    lists_full: In(1)
+        A triangle found no room in its node's list (wired or); only with list memories.
+    shown: In(1)
+        ``front`` at the right end of the scan chain.
+    read_scan: Out(1)
+        Begin to read the depths of the next scan.
+    scan_read: In(1)
+        High for one clock when the last of them has been taken.
+    depths: In(stream of depth words)
+        These and the three before only where pictures are merged as they are scanned.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -17,18 +17,6 @@ class NodeControl:
 
     This is no component: it adds members, signals and states to the controller that has it, so
     that a controller without nodes stays as it is.
-
-    Members, of the controller
-    --------------------------
-    nodes: In(node_bits)
-        How many there are, from the right end of the node lines.
-    lists_full: In(1)
-        A triangle found no room in its node's list (wired or); only with list memories.
-    shown: In(1)
-        ``front`` at the right end of the scan chain.
-    read_scan: Out(1), scan_read: In(1), depths: In(stream of depth_bits)
-        ``ScanReadBack``: to start it, that it is done, and what it reads.
-        These and ``shown`` only where pictures are merged as they are scanned.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -25,16 +25,8 @@ class MergeCard(wiring.Component):
 
     A subclass adds ``members`` and how it merges, in ``merge``, and drives ``sent`` there.
 
-    Members
-    -------
-    left: In(Connector), right: Out(Connector)
-        The neighbouring slots; no memory bus passes.
-    broadcast: In(BroadcastLines)
-        The controller's.
-    own: Out(BroadcastLines)
-        To the node's processing elements, with their wired answers.
-    lists_full: Out(1)
-        As of ``NodeGate``; only with a list memory.
+    Members: ``left``, ``right``, ``broadcast`` and ``own`` of every merge card, ``lists_full`` of
+    one with a list memory, and those of the subclass, which describes them all.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

@@ -60,16 +60,19 @@ class VideoScanGenerator(wiring.Component):
         High for one clock when a scan begins, with its vertical sync; at least a line before
         its first fetch.
     pins: Out(VideoPins)
-
-    Where pictures are merged as they are scanned, the pixels pass through the merge cards, and
-    what is on the pins is what comes back from the last one:
-
     first: Out(scanned_pixel_layout)
         What the first merge card compares with: background, and sync.
     last: In(scanned_pixel_layout)
-        It is on the pins in the same clock.
-    read_back: In(1), read_back_done: Out(1), depths: Out(stream of depth_bits)
-        ``start``, ``done`` and ``depths`` of ``ScanReadBack``.
+        From the last merge card; on the pins in the same clock.
+    read_back: In(1)
+        Begin to send the depths of the next scan (``ScanReadBack``).
+    read_back_done: Out(1)
+        High for one clock when the last one has been taken.
+    depths: Out(stream of depth words)
+        In the order of the scan.
+
+    The last five only where pictures are merged as they are scanned: then a pixel passes through
+    the merge cards, and is on the pins as many clocks later as there are of them, less one.
     """
 
     #: Clocks from the announcement to when it is shown, on to the video bus, and to the pins.

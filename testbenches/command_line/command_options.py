@@ -10,7 +10,7 @@ import click
 
 from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
-from ...golden.specification.configuration import MAXIMUM_WORDS, RANGES
+from ...golden.specification.configuration import MAXIMUM_PACKET, MAXIMUM_WORDS, RANGES
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
 from ..machine_options import SETUPS
@@ -46,6 +46,21 @@ class FractionBits(click.ParamType):
         if not re.fullmatch(r"[0-9]{1,9}", value) or int(value) > MAX_FRACTION_BITS:
             self.fail(f"{value!r} is neither 'exact' nor a whole number from 0 to "
                       f"{MAX_FRACTION_BITS}", param, ctx)
+        return int(value)
+
+
+class Packet(click.ParamType):
+    """A number of triangles, or ``contiguous``."""
+
+    name = "N|contiguous"
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> int | str:
+        if value == "contiguous":
+            return "contiguous"
+        if not re.fullmatch(r"[0-9]{1,10}", value) or not 1 <= int(value) <= MAXIMUM_PACKET:
+            self.fail(f"{value!r} is neither 'contiguous' nor a whole number from 1 to "
+                      f"{MAXIMUM_PACKET}", param, ctx)
         return int(value)
 
 
@@ -103,15 +118,26 @@ _FURTHER_OPTIONS = (
                  "of each kind or a pipeline of them.  [default: host]"),
 )
 
+_NODE_OPTIONS = (
+    click.option("--packet", type=Packet(), metavar="N|contiguous",
+                 help="Where merge cards end nodes: how many triangles that follow one another go "
+                 "to one node, or one run of the list for each node.  [default: 1]"),
+    click.option("--retain", is_flag=True, default=None, help="Give each node a list memory: its "
+                 "triangles are loaded once, and all nodes draw theirs at the same time."),
+    click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+                 help="Triangles that each list memory holds; gives nodes one, like --retain.  "
+                 "[default: what the scene needs]"),
+)
+
 
 def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
-    return _with(command, _CAGE_OPTIONS + _PRECISION_OPTIONS + _FURTHER_OPTIONS)
+    return _with(command, _CAGE_OPTIONS + _PRECISION_OPTIONS + _FURTHER_OPTIONS + _NODE_OPTIONS)
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine, but for its precision."""
-    return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS)
+    return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS + _NODE_OPTIONS)
 
 
 def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]

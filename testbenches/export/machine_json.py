@@ -104,6 +104,10 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
         *colors,
         number("unit", c.id_bits, "number of a memory unit, or how many there are"),
         number("address", c.address_bits, "word of a memory unit"),
+        *([] if c.merge is None else
+          [number("node", c.node_bits, "number of a node, or how many there are")]),
+        *([] if not c.order_bits else
+          [number("round", c.order_bits, "round in which a node drew a pixel, beside its depth")]),
     ]
 
 
@@ -112,6 +116,9 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
         commands.Opcode.FRAME_START: commands.frame_start_layout(),
         commands.Opcode.TRIANGLE: commands.triangle_layout(configuration),
         commands.Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout(configuration),
+        commands.Opcode.LOAD: (
+            commands.triangle_layout(configuration) if configuration.setup == "hardware"
+            else commands.prepared_triangle_layout(configuration)),
     }
     return {
         "version": commands.VERSION,
