@@ -31,9 +31,7 @@ class HostBroadcast(Organisation):
 
     @property
     def fault(self) -> Fault | None:
-        configuration = self.configuration
-        unequal = any(domain.units != 1 << configuration.share_bits for domain in self.domains)
-        wrong = configuration.units.bit_count() != 1 or (configuration.block > 1 and unequal)
+        wrong = self.configuration.units.bit_count() != 1 or self.shares_differ
         return Fault.UNITS_UNSUPPORTED if wrong else None
 
     @cached_property

@@ -34,7 +34,7 @@ class Nodes(Organisation):
 
     @property
     def fault(self) -> Fault | None:
-        if any(node.refused for node in self.each):
+        if self.shares_differ or any(node.refused for node in self.each):
             return Fault.UNITS_UNSUPPORTED
         if len({node.resolution for node in self.each}) > 1:
             return Fault.NODES_DIFFER

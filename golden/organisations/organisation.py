@@ -191,6 +191,14 @@ class Organisation(ABC):
         return owners
 
     @property
+    def shares_differ(self) -> bool:
+        """Some processing element has not as many memory units as its cards, which interlace in
+        squares, were built for."""
+        configuration = self.configuration
+        return configuration.block > 1 and any(
+            domain.units != 1 << configuration.share_bits for domain in self.domains)
+
+    @property
     def refused(self) -> bool:
         """The cage boots, but draws nothing."""
         return self.fault is not None
