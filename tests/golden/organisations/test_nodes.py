@@ -175,12 +175,11 @@ def test_a_coarser_cage_shows_each_pixel_several_times(merge):
     assert organisation.video_pixel(18, 12) == (9, 6)
 
 
+@pytest.mark.parametrize("merge", NAMES)
 @pytest.mark.parametrize("packet", [1, 3, "contiguous"])
-def test_shares_are_the_configurations(organisation, packet):
-    name = next(name for name in CAGES if organisation is cage(
-        name, organisation.configuration.merge))
-    shares = cage(name, organisation.configuration.merge, packet=packet).shares(50)
-    assert shares == Shares(organisation.nodes, 50, packet)
+def test_shares_are_the_configurations(merge, packet):
+    shares = cage("cut up differently", merge, packet=packet).shares(50)
+    assert shares == Shares(nodes=3, triangles=50, packet=packet)
 
 
 ORPHANS = {"allow_orphans": True, "words": 250}
