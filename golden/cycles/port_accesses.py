@@ -6,8 +6,6 @@ writes and the scan's slots, in lanes side by side: see ``one_port_lanes``.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -63,10 +61,8 @@ class PortAccesses:
         one after another."""
         organisation = self._organisation
         kept = self._triangles.primitive[spans.begin:spans.end]
-        part = replace(self._display_list, **{
-            name: getattr(self._display_list, name)[kept]
-            for name in ("position", "depth", "color")})
-        drawn = fragments(part, shading="flat", **organisation.resolution.shifts)
+        drawn = fragments(self._display_list.chosen(kept), shading="flat",
+                          **organisation.resolution.shifts)
         x, y = drawn.x.astype(np.int64), drawn.y.astype(np.int64)
         visible = self._visible(y * organisation.resolution.width + x, drawn.depth)
         unit = organisation.unit(x, y)
