@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
+from .broadcast import SetupTiming
 from .cycle_estimate import estimate_cycles
-from .cycle_model import SetupTiming
 from .one_port_lanes import scan_share
 
 #: Clocks in which a processing element surveys a unit of its own, and finds that one is not.

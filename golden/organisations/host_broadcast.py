@@ -40,6 +40,10 @@ class HostBroadcast(Organisation):
                      for first, units in card_order.domains(self.configuration.cards))
 
     @property
+    def each(self) -> tuple[Organisation, ...]:
+        return (self,)
+
+    @property
     def node_units(self) -> tuple[int, ...]:
         return (self.configuration.units,)
 

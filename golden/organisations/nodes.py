@@ -22,7 +22,6 @@ class Nodes(Organisation):
 
     @cached_property
     def each(self) -> tuple[HostBroadcast, ...]:
-        """What each node is by itself."""
         alone: dict[str, Any] = {"allow_orphans": True, "packet": 1, "order_bits": 0,
                                  "list_words": 0, "maximum_nodes": 0}
         return tuple(HostBroadcast(replace(self.configuration, cards=cards, **alone))

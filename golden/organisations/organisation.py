@@ -112,6 +112,12 @@ class Organisation(ABC):
 
     @property
     @abstractmethod
+    def each(self) -> tuple[Organisation, ...]:
+        """What each node is by itself: a cage of one node, whose domains, blocks and owners are
+        numbered from 0."""
+
+    @property
+    @abstractmethod
     def node_units(self) -> tuple[int, ...]:
         """Memory units of each node; a node keeps a picture of its own."""
 
