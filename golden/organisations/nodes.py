@@ -117,6 +117,7 @@ class TreeOfNodes(Nodes):
     0 has the picture (Blazek 1991, chapter V, algorithm 4 and figure 10)."""
 
     name = "tree of nodes"
+    merges_after_drawing = True
 
     def is_scanned(self, node: int) -> bool:
         return node == 0

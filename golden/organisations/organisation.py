@@ -96,6 +96,9 @@ class Organisation(ABC):
     #: Merge cards end nodes, which the cage reports at boot, and whose pictures it merges.
     merges: ClassVar[bool] = False
 
+    #: That is done when drawing is, and takes clocks of its own.
+    merges_after_drawing: ClassVar[bool] = False
+
     def __init__(self, configuration: MachineConfiguration) -> None:
         self.configuration = configuration
 
