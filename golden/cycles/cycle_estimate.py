@@ -9,7 +9,8 @@ triangles ahead, so each few triangles take the longer of
     ports    the accesses of its fragments, slowed down by the scan's slots
 
 and the frame takes as long as its busiest processing element does for all of them, or
-as the broadcast, a clock for each triangle.
+as the broadcast, a clock for each triangle.  Where nodes share the triangles each is a cage by
+itself; the broadcast is for all of them, unless each has its share in a list.
 Where it errs: how often a fragment is visible is the average for a random order of
 drawing; and many processing elements wait for each other's full queues, so that a
 fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
@@ -33,6 +34,7 @@ from ..specification.queues import FRAGMENTS_WAITING
 from ..specification.sampling_grid import Grid
 from .element_latencies import PIPELINE
 from .element_spans import lattice_spans
+from .node_work import share_of_node
 from .one_port_lanes import scan_share
 from .row_clocks import walks
 
@@ -68,10 +70,24 @@ class CycleEstimate:
         return round(max(float(self.draw.max(initial=0)), self.broadcast) + LATENCY_CLOCKS)
 
 
-def estimate_cycles(configuration: MachineConfiguration,
-                    display_list: DisplayList) -> CycleEstimate:
-    """How long ``configuration`` takes for ``display_list``; whole arrays, no loop over pixels."""
-    organisation = organisation_of(configuration)
+def estimate_cycles(configuration: MachineConfiguration, display_list: DisplayList,
+                    retained: bool = False) -> CycleEstimate:
+    """How long ``configuration`` takes for ``display_list``; whole arrays, no loop over pixels.
+
+    ``retained``: the nodes draw it from their lists, all at the same time.
+    """
+    nodes = [_of_node(configuration, display_list, node) for node in range(configuration.nodes)]
+    broadcast = [node.broadcast for node in nodes]
+    return CycleEstimate(np.concatenate([node.draw for node in nodes]),
+                         max(broadcast) if retained else sum(broadcast),
+                         np.concatenate([node.fragments for node in nodes]))
+
+
+def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
+             node: int) -> CycleEstimate:
+    """A node for itself, with the triangles that it draws."""
+    _, display_list = share_of_node(configuration, display_list, node)
+    organisation = organisation_of(configuration).each[node]
     shifts = organisation.resolution.shifts
     triangles = Triangles.of(display_list, Grid.of(display_list, **shifts))
     blocks = organisation.blocks
@@ -81,7 +97,7 @@ def estimate_cycles(configuration: MachineConfiguration,
     written, slots = 0.0, 0.0
     if configuration.memory_ports == 1:
         written = visible_share(depth_complexity(display_list, **shifts))
-        slots = scan_share(configuration)
+        slots = scan_share(configuration, node)
     draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
     for spans in lattice_spans(triangles, blocks):
         count = spans.end - spans.begin

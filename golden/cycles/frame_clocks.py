@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..merging.cage import merge_cage
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
+from .broadcast import SetupTiming
 from .cycle_estimate import estimate_cycles
-from .cycle_model import SetupTiming
+from .merge_clocks import merge_clocks
 from .one_port_lanes import scan_share
 
 #: Clocks in which a processing element surveys a unit of its own, and finds that one is not.
@@ -34,17 +36,19 @@ class FrameClocks:
     ``draw``       from the frame's start to the last fragment
     ``scan``       of one scan
     ``read_back``  of all depths
+    ``merge``      from the last fragment until the nodes' pictures are one
     """
 
     boot: int
     draw: int
     scan: int
     read_back: int
+    merge: int = 0
 
     @property
     def shown(self) -> int:
         """The picture is swapped at the start of the first scan that finds it complete."""
-        return ((self.boot + self.draw) // self.scan + 1) * self.scan
+        return ((self.boot + self.draw + self.merge) // self.scan + 1) * self.scan
 
     @property
     def total(self) -> int:
@@ -70,17 +74,29 @@ def predict_frame(configuration: MachineConfiguration, display_list: DisplayList
         draw=draw,
         scan=configuration.cycles_per_scan,
         read_back=READ_BACK * organisation.depths_read_back,
+        merge=_merge(configuration, display_list),
     )
+
+
+def _merge(configuration: MachineConfiguration, display_list: DisplayList) -> int:
+    if not organisation_of(configuration).merges_after_drawing:
+        return 0
+    _, traffic = merge_cage(configuration, display_list)
+    return sum(merge_clocks(configuration, traffic))
 
 
 def most_frame_clocks(configuration: MachineConfiguration, commands: int) -> int:
     """More clocks than any frame of so many commands can take: beyond, the machine hangs.
 
     Every triangle waits for its divisions and covers the screen, every pixel costs a scan slot,
-    a read and a write; then the stalls of the most patient host, and some scans.
+    a read and a write, likewise in each step of a merge; then the stalls of the most patient host,
+    and some scans.
     """
+    organisation = organisation_of(configuration)
+    steps = (organisation.nodes - 1).bit_length() if organisation.merges_after_drawing else 0
     pixels = configuration.width * configuration.height
     divisions = DIVISIONS * configuration.setup_interval
-    return (1000 + (commands + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)
-            + 30 * organisation_of(configuration).depths_read_back
+    per_command = (6 + 3 * steps) * pixels + 16 * configuration.height + 64 + divisions
+    return (1000 + (commands + 4) * per_command
+            + 30 * organisation.depths_read_back
             + 4 * configuration.cycles_per_scan)

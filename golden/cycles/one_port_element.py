@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from .element_latencies import NEVER, Drawn, Pipeline
 from .element_spans import LatticeSpans
@@ -24,14 +25,16 @@ OnePortCost = list[tuple[int, SpanAccesses | None]]
 
 
 class OnePort:
-    """The ports of a machine, one of each unit, and the ``elements`` before them."""
+    """The ports of a node, one of each unit, and the ``elements`` before them."""
 
     def __init__(self, configuration: MachineConfiguration, accesses: PortAccesses,
-                 pipeline: Pipeline) -> None:
+                 pipeline: Pipeline, node: int = 0) -> None:
         self._accesses = accesses
+        shares = scan_shares(configuration)
         self.elements = [
-            OnePortElement(ElementLanes(configuration, shares), pipeline)
-            for shares in scan_shares(configuration).swapaxes(0, 1)]
+            OnePortElement(ElementLanes(configuration, shares[:, element]), pipeline)
+            for element, domain in enumerate(organisation_of(configuration).domains)
+            if domain.node == node]
 
     @property
     def bound(self) -> float:

@@ -49,10 +49,12 @@ def lane_of(configuration: MachineConfiguration, unit: Int64) -> Int64:
     return unit & 1 if depth_lanes(configuration) == 2 else unit * 0
 
 
-def scan_share(configuration: MachineConfiguration) -> float:
+def scan_share(configuration: MachineConfiguration, node: int = 0) -> float:
     """The share of a unit's clocks in which the scan reads it; the mean over a scan."""
-    # Every unit reads as often as the others.
+    # Every unit of a node reads as often as the others.
     organisation = organisation_of(configuration)
+    if not organisation.is_scanned(node):
+        return 0.0
     clocks = configuration.clocks_per_pixel << organisation.resolution.x_shift
     return _shown(configuration) / (clocks * organisation.units)
 
@@ -60,7 +62,7 @@ def scan_share(configuration: MachineConfiguration) -> float:
 def scan_shares(configuration: MachineConfiguration) -> Float64:
     """float64 (rows, elements, 2): the share of each lane's time that the scan takes while it
     shows that row of the picture; blanking of both kinds is spread over all rows.  The rows
-    repeat."""
+    repeat.  Nodes that the scan does not read lose nothing."""
     organisation = organisation_of(configuration)
     elements = len(organisation.domains)
     unit, group = organisation.scan_tile, organisation.scan_group
@@ -70,8 +72,9 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     # A unit reads for a group of pixels at once, at its beginning.
     clocks = configuration.clocks_per_pixel * group << organisation.resolution.x_shift
     read = np.zeros((rows, columns // group, elements + 1, 2))  # the last one has the orphans
-    for owner in organisation.owners:
-        read[y, x // group, owner[unit], lane] = 1
+    for node, owner in enumerate(organisation.owners):
+        if organisation.is_scanned(node):
+            read[y, x // group, owner[unit], lane] = 1
     return np.asarray(read[:, :, :-1].mean(axis=1) * (_shown(configuration) / clocks))
 
 

@@ -6,8 +6,6 @@ writes and the scan's slots, in lanes side by side: see ``one_port_lanes``.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,19 +22,20 @@ Int64 = NDArray[np.int64]
 
 
 class PortAccesses:
-    """The accesses of all spans of a list to one-port units, asked for in drawing order; the list
-    ``after`` was drawn before it."""
+    """The accesses of all spans of a node's list to its one-port units, asked for in drawing order;
+    the node has drawn the list ``after`` before it."""
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
-                 triangles: Triangles, after: DisplayList | None = None) -> None:
+                 triangles: Triangles, after: DisplayList | None = None, node: int = 0) -> None:
         self._configuration = configuration
+        self._node = node
         self._display_list = display_list
         self._triangles = triangles
         organisation = self._organisation = organisation_of(configuration)
         width, height, *_ = organisation.resolution
         self._nearest = np.full(width * height, configuration.depth_background)
         self._accesses = np.zeros(organisation.units)
-        self._block_units = np.array([block.units for block in organisation.blocks])
+        self._block_units = np.array([block.units for block in organisation.each[node].blocks])
         if after is not None:
             picture = draw(after, shading="flat", **organisation.resolution.shifts)
             self._nearest = picture.depth.astype(np.int64).reshape(-1)
@@ -56,17 +55,15 @@ class PortAccesses:
     def bound(self) -> float:
         """Clocks that the busiest unit's one port is taken by the spans asked for and by the
         scan."""
-        return float(self._accesses.max()) / (1 - scan_share(self._configuration))
+        return float(self._accesses.max()) / (1 - scan_share(self._configuration, self._node))
 
     def _accesses_of(self, spans: LatticeSpans) -> tuple[Int64, Int64]:
         """int64 (n, 2), by lane: fragments of each span, and visible ones, as the pixels are drawn
         one after another."""
         organisation = self._organisation
         kept = self._triangles.primitive[spans.begin:spans.end]
-        part = replace(self._display_list, **{
-            name: getattr(self._display_list, name)[kept]
-            for name in ("position", "depth", "color")})
-        drawn = fragments(part, shading="flat", **organisation.resolution.shifts)
+        drawn = fragments(self._display_list.chosen(kept), shading="flat",
+                          **organisation.resolution.shifts)
         x, y = drawn.x.astype(np.int64), drawn.y.astype(np.int64)
         visible = self._visible(y * organisation.resolution.width + x, drawn.depth)
         unit = organisation.unit(x, y)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from .element_latencies import NEVER, Drawn, Pipeline
 from .element_spans import LatticeSpans
@@ -20,13 +21,15 @@ TwoPortCost = tuple[float, float, float]
 
 
 class TwoPorts:
-    """The ports of a machine, where no fragment waits, and the ``elements`` before them."""
+    """The ports of a node, where no fragment waits, and the ``elements`` before them."""
 
     bound = 0.0
 
-    def __init__(self, configuration: MachineConfiguration, pipeline: Pipeline) -> None:
+    def __init__(self, configuration: MachineConfiguration, pipeline: Pipeline,
+                 node: int = 0) -> None:
         self._pipeline = pipeline
-        self.elements = [TwoPortElement(pipeline) for _ in range(configuration.processing_elements)]
+        self.elements = [TwoPortElement(pipeline)
+                         for _ in organisation_of(configuration).each[node].domains]
 
     def costs(self, entries: Entries, spans: LatticeSpans) -> list[TwoPortCost]:
         """The cost of each pair, as the pair's element takes it."""

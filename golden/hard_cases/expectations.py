@@ -106,7 +106,7 @@ def covered_once(inside: Formula, says: str) -> Expectation:
         level = replace(display_list, depth=np.zeros_like(display_list.depth))
         count = display_list.triangles
         first = draw(level)
-        last = draw(reordered(level, np.arange(count)[::-1])).winner
+        last = draw(level.chosen(np.arange(count)[::-1])).winner
         covered = (first.winner != NO_PRIMITIVE).astype(np.int64)
         return (difference("coverage", covered, everywhere(inside, first).astype(np.int64))
                 or difference("last triangle", np.where(last < 0, last, count - 1 - last),
@@ -137,14 +137,14 @@ def _any_order(display_list: DisplayList, draw: Draw) -> str | None:
     expected = draw(display_list)
     for seed in range(4):
         order = np.argsort(RandomNumbers(seed).uniform(count), kind="stable")
-        got = draw(reordered(display_list, order))
+        got = draw(display_list.chosen(order))
         complaint = difference("depth", got.depth, expected.depth)
         if complaint:
             return f"permutation {seed}: {complaint}"
         winner = np.append(order, NO_PRIMITIVE)[got.winner]  # -1 is the last
         for primitive in np.unique(winner[winner != expected.winner]):
             # Another one is seen: then both are at the same depth there.
-            alone = draw(reordered(display_list, np.array([primitive])))
+            alone = draw(display_list.chosen(np.array([primitive])))
             here = (winner == primitive) & (winner != expected.winner)
             if not np.array_equal(alone.depth[here], expected.depth[here]):
                 return f"permutation {seed}: primitive {primitive} is seen where there is no tie"
@@ -153,12 +153,6 @@ def _any_order(display_list: DisplayList, draw: Draw) -> str | None:
 
 ANY_ORDER = Expectation("the same depths in any order of the list; other primitives at ties alone",
                         _any_order)
-
-
-def reordered(display_list: DisplayList, order: NDArray[np.int64]) -> DisplayList:
-    """The triangles numbered ``order``, in that order."""
-    return replace(display_list, position=display_list.position[order],
-                   depth=display_list.depth[order], color=display_list.color[order])
 
 
 def everywhere(formula: Formula, picture: Picture) -> Image:

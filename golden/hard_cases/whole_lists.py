@@ -9,7 +9,7 @@ import numpy as np
 
 from ..scenes.built_in.random_numbers import RandomNumbers
 from ..specification.display_list import DisplayList
-from .expectations import ANY_ORDER, ANY_WINDING, NOTHING_DRAWN, difference, reordered, winners
+from .expectations import ANY_ORDER, ANY_WINDING, NOTHING_DRAWN, difference, winners
 from .hard_case import Draw, Expectation, HardCase
 from .screen_lists import FARTHEST, SIDE, screen_list
 
@@ -32,12 +32,12 @@ def _random(count: int, seed: int, *, ties: bool) -> DisplayList:
 
 def _repeated() -> DisplayList:
     once = _random(REPEATED, 3, ties=False)
-    return reordered(once, np.tile(np.arange(REPEATED), COPIES))
+    return once.chosen(np.tile(np.arange(REPEATED), COPIES))
 
 
 def _as_if_once(display_list: DisplayList, draw: Draw) -> str | None:
     picture = draw(display_list)
-    once = draw(reordered(display_list, np.arange(REPEATED)))
+    once = draw(display_list.chosen(np.arange(REPEATED)))
     return (difference("primitive", picture.winner, once.winner)
             or difference("depth", picture.depth, once.depth))
 
@@ -47,7 +47,7 @@ def _any_order() -> DisplayList:
     steep, level = _random(30, 4, ties=False), _random(30, 5, ties=True)
     both = screen_list(np.concatenate([steep.position, level.position]) / 256,
                        np.concatenate([steep.depth, level.depth]))
-    return reordered(both, np.argsort(RandomNumbers(6).uniform(60), kind="stable"))
+    return both.chosen(np.argsort(RandomNumbers(6).uniform(60), kind="stable"))
 
 
 def _many() -> DisplayList:

@@ -76,9 +76,7 @@ def node_pictures(display_list: DisplayList, shares: Shares, *, order_bits: int 
     pictures = []
     for node in range(shares.nodes):
         own = shares.of_node(node)
-        part = replace(display_list, position=display_list.position[own],
-                       depth=display_list.depth[own], color=display_list.color[own])
-        drawn = draw(part, shading=shading, x_shift=x_shift, y_shift=y_shift)
+        drawn = draw(display_list.chosen(own), shading=shading, x_shift=x_shift, y_shift=y_shift)
         seen = drawn.winner != NO_PRIMITIVE
         primitive = own[drawn.winner[seen]]
         winner = drawn.winner.copy()
@@ -87,10 +85,3 @@ def node_pictures(display_list: DisplayList, shares: Shares, *, order_bits: int 
         order[seen] &= shares.round[primitive]
         pictures.append(NodePicture(replace(drawn, winner=winner), order))
     return pictures
-
-
-def order_matters(pictures: Sequence[NodePicture], whole: Picture) -> bool:
-    """Whether the merged picture is wrong without an order: somewhere nodes tie in depth, and the
-    winner is not of the lowest of them."""
-    without = [replace(picture, order=np.zeros_like(picture.order)) for picture in pictures]
-    return not np.array_equal(merged(without).picture.winner, whole.winner)

@@ -21,7 +21,8 @@ class Send(NamedTuple):
 
 @dataclass(frozen=True)
 class Traffic:
-    """All sends of a merge among ``nodes`` nodes side by side.
+    """All sends of a merge among ``nodes`` nodes side by side; each pixel of them is a word of
+    ``pixel_bits``, 0 where no machine says how many.
 
     A send takes every piece of the backplane between its two nodes; piece k lies between the
     nodes k and k + 1.
@@ -29,11 +30,17 @@ class Traffic:
 
     nodes: int
     sends: Sequence[Send]
+    pixel_bits: int = 0
 
     @property
     def pixels(self) -> int:
         """Pixels sent in all."""
         return sum(send.pixels for send in self.sends)
+
+    @property
+    def bits(self) -> int:
+        """Bits sent in all."""
+        return self.pixels * self.pixel_bits
 
     @property
     def steps(self) -> list[int]:

@@ -31,15 +31,17 @@ class HostBroadcast(Organisation):
 
     @property
     def fault(self) -> Fault | None:
-        configuration = self.configuration
-        unequal = any(domain.units != 1 << configuration.share_bits for domain in self.domains)
-        wrong = configuration.units.bit_count() != 1 or (configuration.block > 1 and unequal)
+        wrong = self.configuration.units.bit_count() != 1 or self.shares_differ
         return Fault.UNITS_UNSUPPORTED if wrong else None
 
     @cached_property
     def domains(self) -> tuple[Domain, ...]:
         return tuple(Domain(0, first, units)
                      for first, units in card_order.domains(self.configuration.cards))
+
+    @property
+    def each(self) -> tuple[Organisation, ...]:
+        return (self,)
 
     @property
     def node_units(self) -> tuple[int, ...]:

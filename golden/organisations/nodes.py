@@ -22,7 +22,6 @@ class Nodes(Organisation):
 
     @cached_property
     def each(self) -> tuple[HostBroadcast, ...]:
-        """What each node is by itself."""
         alone: dict[str, Any] = {"allow_orphans": True, "packet": 1, "order_bits": 0,
                                  "list_words": 0, "maximum_nodes": 0}
         return tuple(HostBroadcast(replace(self.configuration, cards=cards, **alone))
@@ -34,7 +33,7 @@ class Nodes(Organisation):
 
     @property
     def fault(self) -> Fault | None:
-        if any(node.refused for node in self.each):
+        if self.shares_differ or any(node.refused for node in self.each):
             return Fault.UNITS_UNSUPPORTED
         if len({node.resolution for node in self.each}) > 1:
             return Fault.NODES_DIFFER
@@ -118,6 +117,7 @@ class TreeOfNodes(Nodes):
     0 has the picture (Blazek 1991, chapter V, algorithm 4 and figure 10)."""
 
     name = "tree of nodes"
+    merges_after_drawing = True
 
     def is_scanned(self, node: int) -> bool:
         return node == 0

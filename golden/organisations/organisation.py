@@ -96,6 +96,9 @@ class Organisation(ABC):
     #: Merge cards end nodes, which the cage reports at boot, and whose pictures it merges.
     merges: ClassVar[bool] = False
 
+    #: That is done when drawing is, and takes clocks of its own.
+    merges_after_drawing: ClassVar[bool] = False
+
     def __init__(self, configuration: MachineConfiguration) -> None:
         self.configuration = configuration
 
@@ -109,6 +112,12 @@ class Organisation(ABC):
     def fault(self) -> Fault | None:
         """Why the cage is refused: it boots, answers this and draws nothing; of what follows only
         ``domains`` and ``node_units`` can be asked.  None where it draws."""
+
+    @property
+    @abstractmethod
+    def each(self) -> tuple[Organisation, ...]:
+        """What each node is by itself: a cage of one node, whose domains, blocks and owners are
+        numbered from 0."""
 
     @property
     @abstractmethod
@@ -189,6 +198,14 @@ class Organisation(ABC):
         for element, (node, first, units) in enumerate(self.domains):
             owners[node, first:first + units] = element
         return owners
+
+    @property
+    def shares_differ(self) -> bool:
+        """Some processing element has not as many memory units as its cards, which interlace in
+        squares, were built for."""
+        configuration = self.configuration
+        return configuration.block > 1 and any(
+            domain.units != 1 << configuration.share_bits for domain in self.domains)
 
     @property
     def refused(self) -> bool:

@@ -16,28 +16,12 @@ from ..specification.fixed_point import (
     error_fraction_bits,
     on_screen_fraction_bits,
 )
+from .node_plan import check_given, fields_of_nodes, lines_of_nodes, needs_of_nodes
+from .plan_line import PlanLine
 from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
 
 #: What a processing element holds in waiting where there is enough to hold.
 FIFO_DEPTH = MachineConfiguration.fifo_depth
-
-@dataclass(frozen=True)
-class PlanLine:
-    """One number of the machine.
-
-    ``item``    what it is
-    ``value``   in the planned machine
-    ``full``    in the machine for every triangle on a screen of that size
-    ``reason``  what of the scene decides it
-    ``saves``   bits of each triangle broadcast that this alone saves; negative where the
-                scene needs more, None where it does not touch them
-    """
-
-    item: str
-    value: str
-    full: str
-    reason: str
-    saves: int | None = None
 
 
 @dataclass(frozen=True)
@@ -52,11 +36,12 @@ class Plan:
 
 
 def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
-         fraction_bits: int | None = None, **rest: Any) -> Plan:
+         fraction_bits: int | None = None, retain: bool = False, **rest: Any) -> Plan:
     """The machine that draws ``display_list`` with the least hardware, on these cards.
 
     ``max_error``      LSB by which a depth may be off; 0 is exact
     ``fraction_bits``  None: the fewest for ``max_error``
+    ``retain``         the nodes have list memories, which hold the whole list
     ``rest``           further fields of ``MachineConfiguration``, which are then not planned;
                        ``width``, ``height`` and ``depth_bits`` must be those of the list, and
                        ``sub_bits``, always the fewest, is none of them
@@ -65,7 +50,8 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     for the whole screen.  The stored depth keeps the list's ``depth_bits``, since the
     background's depth is part of the picture.  The plan is for the resolution that the
     memory holds: with units pulled out, ``scene_needs.fitted`` decides whether the list
-    still fits.  Raises ``InputError``.
+    still fits.  In a cage of nodes pixels carry an order only where nodes tie.  Raises
+    ``InputError``.
 
     >>> import cardcage
     >>> scene = cardcage.make_display_list("tetra:depth=0", width=16, height=16)
@@ -92,7 +78,27 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         if max_error:
             fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
     machine = replace(machine, fraction_bits=fraction_bits)
-    planned = replace(machine, **{
+    nodes = needs_of_nodes(machine, display_list, needs.exact_fraction_bits, retain)
+    asked = {name: value for name, value in rest.items() if name != "shading"}
+    planned = replace(machine, **_fewest(needs, machine) | asked
+                      | fields_of_nodes(nodes, retain, rest))
+    full = MachineConfiguration(
+        **fixed, sub_bits=own_sub_bits, words=planned.words,
+        clocks_per_pixel=planned.clocks_per_pixel, timing=planned.timing,
+        maximum_units=planned.maximum_units, allow_orphans=planned.allow_orphans,
+        packet=planned.packet, maximum_nodes=planned.maximum_nodes,
+        fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
+                                              max_error))
+    lines = _lines(planned, full, needs, max_error)
+    if nodes is not None:
+        check_given(planned, nodes)
+        lines += lines_of_nodes(planned, full, nodes, rest.get("order_bits"))
+    return Plan(planned, full, needs, tuple(lines))
+
+
+def _fewest(needs: SceneNeeds, machine: MachineConfiguration) -> dict[str, int]:
+    """The widths that hold every triangle of the list."""
+    return {
         "coordinate_bits": needs.coordinate_bits,
         "edge_column_bits": needs.edge_column_bits,
         "edge_height_bits": needs.edge_height_bits,
@@ -101,14 +107,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         "channel_integer_bits": needs.channel_integer_bits(machine),
         # One triangle is drawn, and all the others can wait behind it.
         "fifo_depth": min(FIFO_DEPTH, max(2, needs.drawn + 1)),
-    } | {name: value for name, value in rest.items() if name != "shading"})
-    full = MachineConfiguration(
-        **fixed, sub_bits=own_sub_bits, words=planned.words,
-        clocks_per_pixel=planned.clocks_per_pixel, timing=planned.timing,
-        maximum_units=planned.maximum_units, allow_orphans=planned.allow_orphans,
-        fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
-                                              max_error))
-    return Plan(planned, full, needs, tuple(_lines(planned, full, needs, max_error)))
+    }
 
 
 def triangle_bits(configuration: MachineConfiguration) -> int:

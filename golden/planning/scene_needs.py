@@ -22,6 +22,7 @@ from ..specification.edge_widths import fewest_edge_fraction_bits
 from ..specification.errors import InputError
 from ..specification.fixed_point import error_bound, exact_fraction_bits
 from ..specification.sampling_grid import Grid
+from .node_needs import NodeNeeds
 
 Int64 = NDArray[np.int64]
 
@@ -220,8 +221,9 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
     ``bit_true.draw``.
 
     Raises ``InputError``, naming the field and both numbers, for a list whose picture that
-    machine could not draw: other sizes or depths, or words too narrow for a triangle.  Fewer
-    fraction bits than the list needs are no error: they are what makes a picture approximate.
+    machine could not draw: other sizes or depths, words too narrow for a triangle, or, in a cage
+    of nodes, too few to keep ties in order or to hold the largest share.  Fewer fraction bits
+    than the list needs are no error: they are what makes a picture approximate.
     """
     def refuse(field: str, needed: int, built: int) -> InputError:
         return InputError(f"display list: {field} {needed}, the machine is built for {built}: "
@@ -246,4 +248,9 @@ def fitted(configuration: MachineConfiguration, display_list: DisplayList) -> Di
             continue
         if needed > (built := getattr(configuration, field)):
             raise refuse(field, needed, built)
+    if configuration.merge is not None:
+        nodes = NodeNeeds(configuration, display_list, needs.exact_fraction_bits)
+        for field, needed, reason, remedy in nodes.lacks(configuration):
+            raise InputError(f"display list: {field} {needed} {reason}, the machine is built for "
+                             f"{getattr(configuration, field)}: {remedy}")
     return display_list

@@ -141,6 +141,11 @@ def prepared_triangle_layout(configuration: MachineConfiguration) -> Layout:
     }
 
 
+def list_word_bits(configuration: MachineConfiguration) -> int:
+    """Bits of a triangle in a list memory: all that is broadcast of it but its node."""
+    return layout_bits(prepared_triangle_layout(configuration)) - configuration.node_bits
+
+
 def triangle_layout(configuration: MachineConfiguration) -> Layout:
     """The body of ``TRIANGLE``: three vertices as in the display list."""
     vertex: Layout = {

@@ -206,17 +206,22 @@ class MachineConfiguration:
                              f"{self.width}x{self.height}")
 
     def _check_packet(self) -> None:
-        if self.packet != "contiguous":
+        if self.packet == "contiguous":
+            return
+        try:
             check_whole("packet", self.packet, 1, MAXIMUM_PACKET)
+        except InputError as error:
+            raise InputError(f"{error}, nor contiguous") from None
 
     def _check_nodes(self) -> None:
         if self.nodes > MAXIMUM_NODES:
-            raise InputError(f"cards: {self.nodes} nodes, at most {MAXIMUM_NODES}")
+            raise InputError(f"cards: {self.nodes} nodes, at most {MAXIMUM_NODES}; end fewer of "
+                             "them, with more processing elements in each")
         if self.maximum_nodes == 0:
             object.__setattr__(self, "maximum_nodes", self.nodes)
         if not self.nodes <= self.maximum_nodes:
             raise InputError(f"maximum_nodes: the node lines carry {self.maximum_nodes}, the cage "
-                             f"holds {self.nodes} nodes")
+                             f"holds {self.nodes} nodes; leave it out, or take {self.nodes}")
         if self.merge is None:
             for name, least in (("list_words", 0), ("order_bits", 0), ("maximum_nodes", 1)):
                 if getattr(self, name) != least:

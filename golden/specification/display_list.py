@@ -6,7 +6,7 @@ import os
 import tempfile
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +109,11 @@ class DisplayList:
         """True when every triangle has one colour: no channel needs interpolating."""
         first, second, third = (self.color[:, vertex] for vertex in range(3))
         return np.array_equal(first, second) and np.array_equal(first, third)
+
+    def chosen(self, triangles: NDArray[np.int64]) -> DisplayList:
+        """A list of these triangles, by their numbers, in this order."""
+        return replace(self, position=self.position[triangles], depth=self.depth[triangles],
+                       color=self.color[triangles])
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an ``.npz``: to a temporary name first, then renamed into place."""

@@ -20,5 +20,5 @@ OUTLINES_WAITING = 16
 def depth_lanes(configuration: MachineConfiguration) -> int:
     """Lanes of a one-port depth test: 1 where no processing element has more than one memory
     unit, else 2."""
-    return 1 + any(units > 1 for _, units in domains(configuration.cards))
+    return 1 + any(units > 1 for cards in configuration.node_cards for _, units in domains(cards))
 

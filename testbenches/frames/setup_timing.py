@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from ...golden.cycles.cycle_model import SetupTiming
+from ...golden.cycles.broadcast import SetupTiming
 from ...golden.specification.configuration import MachineConfiguration
 
 

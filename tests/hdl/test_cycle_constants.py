@@ -13,7 +13,8 @@ import pytest
 from cycle_lists import scene
 from wide_machines import wide_machine
 
-from cardcage.golden.cycles.cycle_model import SetupTiming, predict_cycles
+from cardcage.golden.cycles.broadcast import SetupTiming
+from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
 from cardcage.golden.cycles.one_port_lanes import LANE_START
 from cardcage.golden.specification import commands

@@ -3,119 +3,20 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
 from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
 import pytest
-from cycle_lists import CARDS, owner, scene
+from cycle_lists import CARDS, scene
+from cycle_recurrence import written_out
 from wide_machines import wide_machine
 
-from cardcage.golden.cycles.cycle_model import SetupTiming, predict_cycles
+from cardcage.golden.cycles.broadcast import SetupTiming
+from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.element_latencies import Pipeline
 from cardcage.golden.cycles.element_spans import lattice_spans
-from cardcage.golden.organisations.organisation_of import organisation_of
-from cardcage.golden.reference.coverage import Triangles
-from cardcage.golden.reference.exact import fragments
-from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
-from cardcage.golden.specification.sampling_grid import Grid
-
-
-def walked_by_hand(configuration: MachineConfiguration, listed: DisplayList, pipeline: Pipeline):
-    """For each triangle and element: None where its box misses the element, else the clocks of the
-    walk and, clocks after its load, every row's pixels; None in place of pixels at an open end."""
-    triangles = Triangles.of(listed, Grid.of(listed))
-    drawn = fragments(listed)
-    owners = np.array([owner(configuration, unit) for unit in range(configuration.units)])
-    covered = Counter(zip(drawn.primitive.tolist(), configuration.interlace.unit(
-        drawn.x, drawn.y).tolist(), drawn.y.tolist(), strict=True))
-    blocks = organisation_of(configuration).blocks
-    units = configuration.interlace.unit(*np.meshgrid(np.arange(listed.width),
-                                                      np.arange(listed.height)))
-    by_block = [  # the units whose pixels have its offset from a multiple of its stride
-        {int(unit) for unit in np.unique(units[block.y_offset::1 << block.y_bits << block.shifted,
-                                               block.x_offset::1 << block.x_bits])}
-        for block in blocks]
-    work = []
-    for place, primitive in enumerate(triangles.primitive.tolist()):
-        box = units[triangles.top[place]:triangles.bottom[place],
-                    triangles.left[place]:triangles.right[place]]
-        of_triangle = []
-        for element in range(configuration.processing_elements):
-            mine = [units for block, units in zip(blocks, by_block, strict=True)
-                    if block.element == element]
-            if len(mine) == 1 and element not in owners[box]:
-                of_triangle.append(None)
-                continue
-            clock = pipeline.first_row if len(mine) > 1 else 0
-            rows = []
-            for number, block in enumerate(mine):
-                if number:
-                    clock += pipeline.block
-                owned = [y for y in range(triangles.top[place], triangles.bottom[place])
-                         if set(units[y].tolist()) & block]
-                for y in owned:
-                    rows.append((clock, sum(covered[primitive, unit, y] for unit in block)))
-                    clock += 1
-                clock += not owned
-            if not rows or rows[-1][0] < clock - 1 or not rows[-1][1]:
-                rows.append((clock - 1, None))
-            walk = clock + (pipeline.again if len(mine) > 1 else 0)
-            of_triangle.append((walk, [row for row in rows if row[1] != 0]))
-        work.append(of_triangle)
-    return triangles, work
-
-
-def written_out(configuration, listed, pipeline, depth, setup):
-    """The same recurrence with two ports, span by span, queue by queue."""
-    triangles, work = walked_by_hand(configuration, listed, pipeline)
-    elements = range(configuration.processing_elements)
-    clocks = []  # of each element's spans, once all of them are known
-    for element in elements:
-        pixels = [row[1] for kept in work if kept[element] for row in kept[element][1]]
-        clocks.append([1 if count is None else count for count in pixels])
-    never = -10**9
-    load, free, number = ([never for _ in elements], [never for _ in elements],
-                          [0 for _ in elements])
-    freed, taken = [[] for _ in elements], [[] for _ in elements]
-    entered, sent, finished, offered = [], [], [], -1
-    for place, kept in enumerate(work):
-        now = sent[-1] + 1 if sent else 0
-        if setup is not None:
-            before = triangles.primitive[place - 1] if place else -1
-            offered += triangles.primitive[place] - before
-            if place >= setup.waiting:
-                offered = max(offered, entered[place - setup.waiting])
-            entered.append(max(offered, entered[-1] + setup.interval if place else never,
-                               sent[place - setup.inside] if place >= setup.inside else never))
-            now = max(now, entered[-1] + setup.latency,
-                      sent[-1] + setup.leaving if sent else never)
-        while any(sum(time <= now - 2 for time in taken[element])
-                  - sum(time <= now for time in freed[element]) >= depth - 1
-                  for element in elements):
-            now += 1
-        sent.append(now)
-        for element in elements:
-            if kept[element] is None:
-                continue
-            walk, rows = kept[element]
-            taken[element].append(now)
-            begin = max(load[element], now + pipeline.queue)
-            for clock, _ in rows:
-                span = clocks[element][number[element]]
-                free[element] = max(free[element], begin + pipeline.latency + clock) + span
-                number[element] += 1
-            done = clocks[element][:number[element]]
-
-            def back(spans, done=done, end=free[element]):
-                return end - max(spans, sum(done[-1 - spans:])) if len(done) > spans else never
-
-            load[element] = max(begin + walk, back(pipeline.spans_ahead) - pipeline.lead)
-            freed[element].append(1 + free[element] - pipeline.valued)
-        finished.append(max(free) + pipeline.finish)
-    return finished
 
 
 @pytest.mark.parametrize(("cards", "skew", "seed"), [
@@ -132,10 +33,10 @@ def test_the_arrays_say_what_the_recurrence_says(cards, skew, seed):
                          SetupTiming(interval=2, latency=11, waiting=4, inside=7)))
     cycles = []
     for depth in (2, 5, 100):
-        prediction = predict_cycles(replace(configuration, fifo_depth=depth), listed, pipeline,
-                                    setup=setup)
+        machine = replace(configuration, fifo_depth=depth)
+        prediction = predict_cycles(machine, listed, pipeline, setup=setup)
         np.testing.assert_array_equal(
-            prediction.finished, written_out(configuration, listed, pipeline, depth, setup))
+            prediction.finished, written_out(machine, listed, pipeline, setup))
         assert prediction.cycles >= prediction.bound
         cycles.append(prediction.cycles)
     assert cycles == sorted(cycles, reverse=True)
@@ -147,7 +48,7 @@ def test_parts_of_a_list_hang_together(cards, monkeypatch):
     listed = scene(20, n=300)
     configuration = wide_machine(listed, cards=cards, memory_ports=2)
     whole = predict_cycles(configuration, listed)
-    monkeypatch.setattr("cardcage.golden.cycles.cycle_model.lattice_spans",
+    monkeypatch.setattr("cardcage.golden.cycles.node_work.lattice_spans",
                         partial(lattice_spans, row_limit=200))
     parts = predict_cycles(configuration, listed)
     assert (parts.bound, parts.binding) == (pytest.approx(whole.bound, rel=0.01), whole.binding)

@@ -2,6 +2,7 @@
 that of the exact reference."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -9,10 +10,11 @@ import pytest
 
 from cardcage.golden.merging.binary_swap import merge_binary_swap
 from cardcage.golden.merging.chain import merge_chain
-from cardcage.golden.merging.node_picture import merged, nearer, node_pictures, order_matters
+from cardcage.golden.merging.node_picture import merged, nearer, node_pictures
+from cardcage.golden.merging.ties import order_matters
 from cardcage.golden.merging.tree import merge_tree, tree_pairs
 from cardcage.golden.organisations.shares import Shares
-from cardcage.golden.reference import exact
+from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.display_list import DisplayList
 
@@ -104,9 +106,42 @@ def test_where_the_order_of_rounds_is_needed(scene, packet, matters):
     display_list = LISTS[scene]
     whole = exact.draw(display_list)
     shares = Shares(nodes=4, triangles=display_list.triangles, packet=packet)
-    assert order_matters(node_pictures(display_list, shares), whole) == matters
+    assert order_matters(display_list, shares) == matters
     without = merged(node_pictures(display_list, shares, order_bits=0))
     assert np.array_equal(without.picture.winner, whole.winner) != matters
+
+
+def few_ties(seed, depths=60):
+    """Triangles at many depths: on some lists two that tie meet, on some they do not."""
+    listed = few_depths(seed)
+    depth = np.random.default_rng(seed).integers(0, depths, (60, 1)).repeat(3, axis=1)
+    return replace(listed, depth=depth.astype(np.int64))
+
+
+def test_a_tie_more_or_less_is_found():
+    """On lists of which some have a tie that matters, also where they are drawn coarser, and drawn
+    with another precision."""
+    found = []
+    for seed in range(40):
+        display_list = few_ties(seed)
+        shares = Shares(nodes=3, triangles=60, packet=1 + seed % 4)
+        for y_shift in (0, 1):
+            whole = exact.draw(display_list, y_shift=y_shift)
+            without = merged(node_pictures(display_list, shares, order_bits=0, y_shift=y_shift))
+            found.append(not np.array_equal(without.picture.winner, whole.winner))
+            assert order_matters(display_list, shares, partial(
+                exact.draw, y_shift=y_shift)) == found[-1], seed
+    assert 20 < sum(found) < 60
+
+
+@pytest.mark.parametrize(("seed", "exactly"), [(43, True), (54, False)])
+def test_too_few_fraction_bits_make_other_ties(seed, exactly):
+    """So a machine's ties are asked of what it draws."""
+    shares, level = Shares(nodes=3, triangles=60), few_ties(seed, depths=3000)
+    sloping = replace(level, depth=level.depth + np.array([0, 5, 11]))
+    assert order_matters(sloping, shares) == exactly
+    assert order_matters(sloping, shares, partial(bit_true.draw, fraction_bits=30)) == exactly
+    assert order_matters(sloping, shares, partial(bit_true.draw, fraction_bits=0)) != exactly
 
 
 @pytest.mark.parametrize("nodes", [1, 2, 3, 5, 8, 13])

@@ -7,7 +7,10 @@ from hypothesis import strategies as st
 from cardcage.golden.specification.card_order import (
     MAXIMUM_CARDS,
     check_cards,
+    check_nodes,
     domains,
+    merge_card,
+    node_cards,
     parse_cards,
 )
 from cardcage.golden.specification.errors import InputError
@@ -28,6 +31,8 @@ from cardcage.golden.specification.errors import InputError
     ("(PM)", "PM"),
     ("1x(PM)", "PM"),
     ("10xP", "P" * 10),
+    ("2x(PMMc)", "PMMCPMMC"),
+    ("2x(2x(PM) T)", "PMPMTPMPMT"),
     ("", ""),
 ])
 def test_spelled_out(text, cards):
@@ -82,9 +87,46 @@ def test_groups_in_groups(order):
     assert parse_cards(cards) == cards
 
 
-@pytest.mark.parametrize("cards", ["PM", "PMMP", "PPM", "PMPMMM", "P" + "M" * 16])
+@pytest.mark.parametrize("cards", ["PM", "PMMP", "PPM", "PMPMMM", "P" + "M" * 16,
+                                   "PMC", "PMMTPMMT", "PMMPMMCPMMMMC"])
 def test_machines(cards):
+    check_nodes(cards)
     check_cards(cards)
+
+
+@pytest.mark.parametrize(("cards", "merge", "nodes"), [
+    ("PMM", None, ["PMM"]), ("PMC", "C", ["PM"]), ("PMMPMMCPMC", "C", ["PMMPMM", "PM"]),
+    ("PMTPMT", "T", ["PM", "PM"]), ("PMCC", "C", ["PM", ""])])
+def test_merge_cards_end_nodes(cards, merge, nodes):
+    assert merge_card(cards) == merge
+    assert node_cards(cards) == nodes
+
+
+@pytest.mark.parametrize(("cards", "message"), [
+    ("PMCPMT", r"C \(chain merge\) and T \(tree merge\) in one cage; end all .* of one kind"),
+    ("PMTPMC", r"C \(chain merge\) and T \(tree merge\) in one cage; end all .* of one kind"),
+    ("PMCPM", r"the last node is not ended; add a C \(chain merge\) at the right end"),
+    ("PMTP", r"the last node is not ended; add a T \(tree merge\) at the right end"),
+])
+def test_nodes_that_are_not_ended_alike(cards, message):
+    with pytest.raises(InputError, match=f"^cards: '{cards}': {message}$") as raised:
+        check_nodes(cards)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(("cards", "message"), [
+    ("PMCPMMC", "^cards: nodes of 1 and 2 memory units in one cage; give all nodes as many$"),
+    ("PMMTPMTPMT", "^cards: nodes of 1 and 2 memory units in one cage; give all nodes as many$"),
+    ("CPMC", "^cards: '' has no processing element; add a P to the left$"),
+    ("PMCMC", "^cards: 'M' has no processing element; add a P to the left$"),
+    ("PMMCMPMC", r"^cards: 'MPM': 1 memory unit\(s\) left of the first processing element"),
+    ("PMCPC", "^cards: 'P' has no memory unit; add an M to the right of a P$"),
+    ("2x(PMMMC)", "^cards: 3 memory units are not supported yet; .* such as 2 or 4$"),
+])
+def test_nodes_that_are_no_machines(cards, message):
+    with pytest.raises(InputError, match=message) as raised:
+        check_cards(parse_cards(cards))
+    assert "\n" not in str(raised.value)
 
 
 @pytest.mark.parametrize(("cards", "message"), [

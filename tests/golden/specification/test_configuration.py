@@ -185,6 +185,47 @@ def test_narrower_words():
     assert replace(wide, fraction_bits=2).depth_plane_bits < wide.depth_plane_bits
 
 
+@pytest.mark.parametrize(("fields", "message"), [
+    ({"cards": "PMCPMT"}, r"^cards: .*C \(chain merge\) and T \(tree merge\) .*; end all nodes"),
+    ({"cards": "PMCPM"}, r"^cards: .*the last node is not ended; add a C \(chain merge\)"),
+    ({"cards": "PMCPMMC"}, "^cards: nodes of 1 and 2 memory units .*; give all nodes as many"),
+    ({"cards": "65x(PMT)"}, "^cards: 65 nodes, at most 64; end fewer of them, with more"),
+    ({"packet": 0}, "^packet: 0 is not a whole number from 1 to [0-9]+, nor contiguous$"),
+    ({"packet": "most"}, "^packet: 'most' is not a whole number from 1 to [0-9]+, nor contiguous$"),
+    ({"order_bits": 17}, "^order_bits: 17 is not a whole number from 0 to 16$"),
+    ({"list_words": -1}, "^list_words: -1 is not a whole number from 0 to 1048576$"),
+    ({"maximum_nodes": 2}, "^maximum_nodes: the node lines carry 2, the cage holds 3 nodes; leave"),
+    ({"maximum_nodes": 65}, "^maximum_nodes: 65 is not a whole number from 0 to 64$"),
+    *(({"cards": "PMPM", name: 4},
+       f"^{name}: 4 is for cages of nodes, and PMPM has no merge card; end its nodes with one, "
+       r"as in 2x\(PMMC\), or leave it out$")
+      for name in ("order_bits", "list_words", "maximum_nodes")),
+])
+def test_nodes_that_are_refused(fields, message):
+    with pytest.raises(InputError, match=message) as raised:
+        MachineConfiguration(**{"cards": "3x(PMC)", "width": 16, "height": 8} | fields)
+    assert "\n" not in str(raised.value)
+
+
+def test_what_follows_from_nodes():
+    machine = MachineConfiguration("4x(PMMC)", 16, 8)
+    assert (machine.merge, machine.nodes, machine.node_cards) == ("C", 4, ["PMM"] * 4)
+    # Each node holds the whole picture, and its elements are numbered in it.
+    assert (machine.units, machine.maximum_units, machine.words) == (2, 2, 64)
+    assert (machine.processing_elements, machine.maximum_nodes) == (4, 4)
+    # The total itself must fit the lines.
+    assert machine.node_bits == 3
+    assert MachineConfiguration("PMMC", 16, 8, maximum_nodes=64).node_bits == 7
+    assert MachineConfiguration("64x(PMT)", 16, 8).nodes == 64
+    # A pixel keeps its round beside the depth, unless nobody asks for it.
+    assert (machine.order_bits, machine.rank_bits) == (16, 24 + 16)
+    for fields in ({"packet": "contiguous"}, {"cards": "PMMC"}, {"order_bits": 0}):
+        free = MachineConfiguration(**{"cards": "4x(PMMC)", "width": 16, "height": 8} | fields)
+        assert (free.order_bits, free.rank_bits) == (0, 24)
+    alone = MachineConfiguration("PMM", 16, 8)
+    assert (alone.merge, alone.nodes, alone.node_bits, alone.order_bits) == (None, 1, 0, 0)
+
+
 def test_presets():
     assert set(PRESETS) == {"tiny", "small", "paper"}
     paper = MachineConfiguration(**PRESETS["paper"])

@@ -13,6 +13,7 @@ from hdl_bench.cage import Run
 from hdl_bench.pictures import exact_words
 from hdl_bench.streams import Sink, Source
 
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.presets import PRESETS
 from cardcage.golden.reference import exact, triangle_words
 from cardcage.golden.reference import triangle_setup as setup
@@ -26,6 +27,7 @@ from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.conversation import owed_at_boot, owed_to
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "command-words.md"
 TINY = MachineConfiguration(**PRESETS["tiny"])
@@ -60,7 +62,8 @@ def symbols(configuration):
             "b": configuration.coordinate_bits, "X": configuration.x_bits,
             "Y": configuration.y_bits, "C": configuration.edge_column_bits,
             "R": configuration.edge_height_bits, "E": configuration.edge_word_bits,
-            "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits}
+            "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits,
+            "O": configuration.order_bits, "N": configuration.node_bits}
 
 
 def test_title_has_the_version():
@@ -85,6 +88,9 @@ CONFIGURATIONS = {
                                              fraction_bits=0),
     "guard": MachineConfiguration("PM", 16, 17, fraction_bits=6),
     "no guard": MachineConfiguration("PM", 16, 17, fraction_bits=7),
+    "nodes": MachineConfiguration("3x(PMT)", 16, 17, fraction_bits=6, maximum_nodes=9),
+    "nodes, few fractions": MachineConfiguration("2x(PMC)", 300, 40, sub_bits=3, fraction_bits=0,
+                                                 order_bits=5),
     "flat, least": MachineConfiguration("PM", 1, 1, sub_bits=1, depth_bits=2, fraction_bits=0,
                                         shading="flat"),
 }
@@ -99,7 +105,7 @@ def test_some_machines_have_guard_bits_and_some_have_none():
 def test_width_formulas(name):
     configuration = CONFIGURATIONS[name]
     values = symbols(configuration)
-    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel) = values.values()
+    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel, order, node) = values.values()
 
     def guard(v):
         g = 0
@@ -118,7 +124,8 @@ def test_width_formulas(name):
     colors = 24 if configuration.shading == "flat" else 9 * channel
     planes = 8 + 3 * y + 2 * x + 1 + 6 * e
     vertices = 8 + 3 * (2 * b + d + 24)  # the longer body where few fraction bits are carried
-    longest = max(planes + 3 * depth + colors, vertices)
+    longest = max(planes + 3 * depth + colors, vertices) + order + node
+    assert node == (configuration.maximum_nodes.bit_length() if configuration.merge else 0)
     assert commands.command_words(configuration) == -(-longest // 32)
     if name == "tiny":
         text = DOCUMENT.read_text(encoding="utf-8")
@@ -170,6 +177,38 @@ def test_triangle_offsets():
     assert [offset for _, offset, _ in hardware[6:12]] == [
         offset + vertex for _, offset, _ in documented]
     assert f"Vertices 1 and 2 follow, {vertex} bits each." in DOCUMENT.read_text(encoding="utf-8")
+
+
+OF_NODES = MachineConfiguration(**PRESETS["tiny"] | {"cards": "2x(PMC)"}, order_bits=5,
+                                list_words=8)
+
+
+def test_the_last_fields_of_a_triangle_are_its_share():
+    rows = table("last fields", "their bits")
+    assert [row["bits"] for row in rows] == ["O", "N"]
+    for name, layout in (("PREPARED_TRIANGLE", commands.prepared_triangle_layout(OF_NODES)),
+                         ("TRIANGLE", commands.triangle_layout(OF_NODES))):
+        documented = [(row["last fields"].split(".")[-1], int(row[f"{name}: first bit"]),
+                       int(row["their bits"])) for row in rows]
+        *_, share, node = hardware_fields(layouts.struct_layout(layout), commands.BODY_OFFSET)
+        assert documented == [(share[0].split(".")[-1], *share[1:]), node]
+    [planes] = [path for path, *_ in hardware_fields(
+        layouts.prepared_triangle_layout(OF_NODES), 0) if path.endswith("round")]
+    assert planes == rows[0]["last fields"]
+
+
+def test_what_a_cage_of_nodes_answers():
+    """At boot, and to each command, as the page has it."""
+    organisation = organisation_of(OF_NODES)
+    boot = [(kind.name, NOTHING if value is None else f"0x{value:08x}")
+            for kind, value in owed_at_boot(organisation)]
+    assert boot == [(row["kind in turn"], row["value in turn"]) for row in table("kind in turn")]
+    answers = {row["command to 2x(PMC) with lists"]: row["answers"].replace(NOTHING, "").split()
+               for row in table("command to 2x(PMC) with lists")}
+    assert set(Opcode.__members__) - set(answers) == {"READ_DEPTH"}
+    for name, kinds in answers.items():
+        owed = owed_to(organisation, commands.command(Opcode[name]))
+        assert [kind.name for kind, _ in owed] == kinds
 
 
 def test_frame_start_offsets():

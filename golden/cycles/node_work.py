@@ -1,0 +1,104 @@
+"""What each triangle costs the processing elements of the node that draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..organisations.organisation_of import organisation_of
+from ..reference.coverage import Triangles
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.sampling_grid import Grid
+from .broadcast import Element
+from .element_latencies import Pipeline
+from .element_spans import LatticeSpans, lattice_spans
+from .one_port_element import OnePort
+from .port_accesses import PortAccesses
+from .row_clocks import Entries, entries_of
+from .two_port_element import TwoPorts
+
+Float64 = NDArray[np.float64]
+Int64 = NDArray[np.int64]
+
+#: Which of the node's elements, clocks of its walker, cost at its ports.
+ElementWork = tuple[int, int, Any]
+
+
+class _Ports(Protocol):
+    """The ports of a node's memory units, and the elements before them.
+
+    ``bound``  clocks that the busiest of them needs at least; 0 where none ever waits
+    """
+
+    @property
+    def elements(self) -> Sequence[Element]: ...
+
+    @property
+    def bound(self) -> float: ...
+
+    def costs(self, entries: Entries, spans: LatticeSpans) -> Sequence[Any]:
+        """The cost of each pair, as the pair's element takes it."""
+
+
+class NodeWork:
+    """The triangles of a display list that one node draws.
+
+    ``primitive``  int64 (n,): which of the whole list may cover a pixel, in its order
+    ``elements``   of the node
+    ``bound``      float64 (elements,): clocks in which each alone, all triangles at hand, finds its
+                   rows, and in which it has a fragment each, the greater; of triangles asked for
+
+    The list ``after`` was drawn before it, by all nodes.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList, node: int,
+                 pipeline: Pipeline, after: DisplayList | None = None) -> None:
+        organisation = organisation_of(configuration)
+        own, listed = share_of_node(configuration, display_list, node)
+        before = None if after is None else share_of_node(configuration, after, node)[1]
+        self._triangles = Triangles.of(listed, Grid.of(listed, **organisation.resolution.shifts))
+        self.primitive = own[self._triangles.primitive]
+        self._pipeline = pipeline
+        self._blocks = organisation.each[node].blocks
+        self._ports: _Ports = (
+            OnePort(configuration, PortAccesses(configuration, listed, self._triangles, before,
+                                                node), pipeline, node)
+            if configuration.memory_ports == 1 else TwoPorts(configuration, pipeline, node))
+        self.elements = self._ports.elements
+        self._bound = np.zeros((2, len(self.elements)))
+
+    def __iter__(self) -> Iterator[list[ElementWork]]:
+        """Of each triangle, in order, what it costs those elements that keep it."""
+        elements = len(self.elements)
+        for spans in lattice_spans(self._triangles, self._blocks):
+            entries = entries_of(self._blocks, elements, spans, self._pipeline)
+            self._bound += [np.bincount(entries.element, entries.walk, elements),
+                            np.bincount(spans.element, spans.length, elements)]
+            work = list(zip(entries.element.tolist(), entries.walk.tolist(),
+                            self._ports.costs(entries, spans), strict=True))
+            count = spans.end - spans.begin
+            places = np.searchsorted(entries.triangle, np.arange(count + 1)).tolist()
+            for first, end in pairwise(places):
+                yield work[first:end]
+
+    @property
+    def bound(self) -> Float64:
+        return np.asarray(self._bound.max(axis=0))
+
+    @property
+    def port_bound(self) -> float:
+        """Clocks of the node's busiest unit's one port, likewise; 0 with two."""
+        return self._ports.bound
+
+
+def share_of_node(configuration: MachineConfiguration, display_list: DisplayList,
+                  node: int) -> tuple[Int64, DisplayList]:
+    """The numbers of a node's triangles, and a list of these."""
+    shares = organisation_of(configuration).shares(display_list.triangles)
+    own = shares.of_node(node)
+    return own, display_list if shares.nodes == 1 else display_list.chosen(own)

@@ -1,0 +1,37 @@
+"""How the nodes of a cage merge what they draw of a display list."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..organisations.organisation_of import organisation_of
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.ranges import COLOR_BITS
+from .chain import merge_chain
+from .node_picture import NodePicture, node_pictures
+from .traffic import Traffic
+from .tree import merge_tree
+
+
+def merge_cage(configuration: MachineConfiguration,
+               display_list: DisplayList) -> tuple[NodePicture, Traffic]:
+    """The merged picture, at the cage's resolution, and what its merge cards send for it.
+
+    Nodes draw exactly.  A chain sends, in each scan, every pixel of the video output, a tree what
+    was drawn, each with the place where it belongs.
+    """
+    organisation = organisation_of(configuration)
+    pictures = node_pictures(
+        display_list, organisation.shares(display_list.triangles),
+        order_bits=configuration.order_bits, shading=configuration.shading,
+        **organisation.resolution.shifts)
+    bits = configuration.rank_bits + COLOR_BITS
+    if organisation.merges_after_drawing:
+        picture, traffic = merge_tree(pictures)
+        return picture, replace(
+            traffic, pixel_bits=bits + configuration.id_bits + configuration.address_bits)
+    picture, traffic = merge_chain(pictures)
+    scanned = configuration.width * configuration.height
+    return picture, replace(traffic, pixel_bits=bits, sends=[
+        send._replace(pixels=scanned) for send in traffic.sends])

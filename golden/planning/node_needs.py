@@ -1,0 +1,105 @@
+"""What a display list asks of a cage whose nodes share its triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property, partial
+from typing import NamedTuple
+
+import numpy as np
+
+from ..merging.ties import order_matters
+from ..organisations.organisation_of import organisation_of
+from ..organisations.shares import Shares
+from ..reference import bit_true, exact
+from ..reference.triangle_setup import outline
+from ..specification.configuration import (
+    MAXIMUM_ORDER_BITS,
+    MAXIMUM_WORDS,
+    MachineConfiguration,
+)
+from ..specification.display_list import DisplayList
+from ..specification.errors import InputError
+from ..specification.sampling_grid import Grid
+
+
+class Lack(NamedTuple):
+    """A field of a machine of which a list needs more.
+
+    ``reason``  why it does
+    ``remedy``  for whoever has the machine
+    """
+
+    field: str
+    needed: int
+    reason: str
+    remedy: str
+
+
+class NodeNeeds:
+    """The needs of ``display_list`` on ``configuration``, a cage of nodes.
+
+    The list is in the formats of the machine, and exact from ``exact_fraction_bits`` on; what the
+    machine has of the fields that are asked for here does not matter.  Drawing, which is what
+    ``ties`` takes, is put off until it is asked for.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
+                 exact_fraction_bits: int) -> None:
+        self._configuration = configuration
+        self._display_list = display_list
+        self._exact = configuration.fraction_bits >= exact_fraction_bits
+        self._shifts = organisation_of(configuration).resolution.shifts
+
+    @cached_property
+    def shares(self) -> Shares:
+        return organisation_of(self._configuration).shares(self._display_list.triangles)
+
+    @cached_property
+    def ties(self) -> bool:
+        """Without an order some pixel would go to another triangle.
+
+        Where the machine's depths err a little so do its ties.
+        """
+        # The winners count, and no colours.
+        draw = (partial(exact.draw, shading="flat", **self._shifts) if self._exact else
+                partial(bit_true.draw, fraction_bits=self._configuration.fraction_bits,
+                        shading="flat", **self._shifts))
+        return order_matters(self._display_list, self.shares, draw)
+
+    @property
+    def order_bits(self) -> int:
+        """The fewest; ``InputError`` where they are more than a machine may have."""
+        if not self.ties:
+            return 0
+        shares = self.shares
+        if shares.order_bits > MAXIMUM_ORDER_BITS:
+            fewest = -(-shares.triangles // (shares.nodes << MAXIMUM_ORDER_BITS))
+            raise InputError(
+                f"packet: {shares.packet} makes {shares.rounds:,} rounds, at most "
+                f"{1 << MAXIMUM_ORDER_BITS:,} keep ties between nodes in order; take {fewest} at "
+                "least, or contiguous")
+        return shares.order_bits
+
+    @cached_property
+    def list_words(self) -> int:
+        """Triangles of the largest share that set-up leaves in it, 1 at least; ``InputError``
+        where they are more than a list memory may hold."""
+        boxes = outline(self._display_list, Grid.of(self._display_list, **self._shifts)).boxes
+        largest = int(np.bincount(self.shares.node[boxes.primitive], minlength=1).max())
+        if largest > MAXIMUM_WORDS:
+            raise InputError(f"list_words: the largest of {self.shares.nodes} shares is "
+                             f"{largest:,} triangles, a list memory holds {MAXIMUM_WORDS:,} at "
+                             "most; add nodes, or send the list every frame")
+        return max(1, largest)
+
+    def lacks(self, configuration: MachineConfiguration) -> Iterator[Lack]:
+        """What that machine, which differs only in the fields asked for here, has too few of."""
+        shares, remedy = self.shares, "take --packet contiguous, or export a machine for this list"
+        if 0 < configuration.order_bits < shares.order_bits:
+            yield Lack("order_bits", shares.order_bits, f"for {shares.rounds:,} rounds", remedy)
+        if configuration.order_bits == 0 and self.ties:
+            yield Lack("order_bits", shares.order_bits, "since nodes tie", remedy)
+        if 0 < configuration.list_words < self.list_words:
+            yield Lack("list_words", self.list_words, "for the largest share",
+                       "export a machine for this list")

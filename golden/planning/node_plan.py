@@ -1,0 +1,63 @@
+"""What of a plan only cages of nodes have: the order that pixels carry, and lists."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..specification.commands import list_word_bits
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.errors import InputError
+from .node_needs import NodeNeeds
+from .plan_line import PlanLine
+
+
+def needs_of_nodes(machine: MachineConfiguration, display_list: DisplayList,
+                   exact_fraction_bits: int, retain: bool) -> NodeNeeds | None:
+    """None where all is one node, in which nothing can be retained."""
+    if machine.merge is not None:
+        return NodeNeeds(machine, display_list, exact_fraction_bits)
+    if retain:
+        raise InputError(f"retain: lists are kept in nodes, and {machine.cards} has no merge card; "
+                         "end its nodes with one, as in 2x(PMMC)")
+    return None
+
+
+def fields_of_nodes(nodes: NodeNeeds | None, retain: bool, rest: dict[str, Any]) -> dict[str, int]:
+    """The fields that are planned for nodes, those that are given left out."""
+    planned: dict[str, int] = {}
+    if nodes is not None and rest.get("order_bits") is None:
+        planned["order_bits"] = nodes.order_bits
+    if nodes is not None and retain and not rest.get("list_words"):
+        planned["list_words"] = nodes.list_words
+    return planned
+
+
+def check_given(planned: MachineConfiguration, nodes: NodeNeeds) -> None:
+    """``InputError`` where too little was asked for."""
+    for field, needed, reason, _ in nodes.lacks(planned):
+        raise InputError(f"{field}: {getattr(planned, field)} asked for, the display list needs "
+                         f"{needed} {reason}; leave it out, or take {needed}")
+
+
+def lines_of_nodes(planned: MachineConfiguration, full: MachineConfiguration, nodes: NodeNeeds,
+                   given: int | None) -> list[PlanLine]:
+    """The lines; ``given`` is an order that was asked for."""
+    shares = nodes.shares
+    if given is not None:
+        reason = "asked for"
+    elif shares.rounds == 1:
+        reason = "each node draws one run of the list, so that ties go to the lower one"
+    elif planned.order_bits:
+        reason = f"nodes tie at some pixel, and have {shares.rounds:,} rounds of a packet each"
+    else:
+        reason = "no tie between nodes goes to a higher one"
+    lines = [PlanLine("order bits", str(planned.order_bits), str(full.order_bits), reason,
+                      full.order_bits - planned.order_bits)]
+    if planned.list_words:
+        bits = list_word_bits(planned)
+        lines.append(PlanLine(
+            "list words", f"{planned.list_words:,}", "-",
+            f"the largest of {shares.nodes} shares has {nodes.list_words:,} triangles that may "
+            f"cover a pixel; {bits} bits each, {planned.list_words * bits:,} in each node"))
+    return lines

@@ -1,0 +1,41 @@
+"""Clocks of a tree's merge, step by step."""
+
+import pytest
+from wide_machines import wide_machine
+
+from cardcage.golden.cycles.frame_clocks import most_frame_clocks, predict_frame
+from cardcage.golden.cycles.merge_clocks import HOP_CLOCKS, STEP_CLOCKS, merge_clocks
+from cardcage.golden.merging.cage import merge_cage
+from cardcage.golden.merging.traffic import Send, Traffic
+from cardcage.golden.scene_display_list import make_display_list
+
+LIST = make_display_list("random:n=60,size=9,seed=4", width=40, height=28).display_list
+
+
+def machine(cards, ports=2):
+    return wide_machine(LIST, cards=cards, memory_ports=ports)
+
+
+@pytest.mark.parametrize(("ports", "clocks"), [(1, 2), (2, 1)])
+def test_a_step_waits_for_its_longest_send(ports, clocks):
+    traffic = Traffic(6, [Send(0, 1, 0, 500), Send(0, 3, 2, 700), Send(0, 5, 4, 0),
+                          Send(1, 2, 0, 900), Send(2, 4, 0, 30)])
+    assert merge_clocks(machine("6x(PMMT)", ports), traffic) == [
+        STEP_CLOCKS + clocks * longest + passed * HOP_CLOCKS
+        for longest, passed in ((700, 1), (900, 2), (30, 4))]
+
+
+def test_one_node_has_nothing_to_merge():
+    alone = machine("PMMT")
+    assert merge_clocks(alone, merge_cage(alone, LIST)[1]) == []
+
+
+@pytest.mark.parametrize("cards", ["4x(PMMC)", "4x(PMMT)"])
+def test_a_frame_has_the_clocks_of_its_merge(cards):
+    cage = machine(cards)
+    frame = predict_frame(cage, LIST)
+    expected = sum(merge_clocks(cage, merge_cage(cage, LIST)[1])) if cage.merge == "T" else 0
+    assert frame.merge == expected and (expected > 2 * STEP_CLOCKS) == (cage.merge == "T")
+    assert frame.shown >= frame.boot + frame.draw + frame.merge
+    assert frame.shown - frame.boot - frame.draw - frame.merge <= frame.scan
+    assert most_frame_clocks(cage, 64) > 3 * frame.total
