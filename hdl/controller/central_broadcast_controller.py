@@ -73,7 +73,7 @@ class CentralBroadcastController(wiring.Component):
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
-        self._frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
+        self.frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
         self._scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
         # What the cage is: units that are somebody's, shares that are not as large as they must be,
         # whether the cards can interlace so many units, and the resolution as it is reported.
@@ -109,6 +109,7 @@ class CentralBroadcastController(wiring.Component):
         self._count_owned(m)
         if self._nodes is not None:
             self._nodes.count(m, self)
+            self._nodes.add_steps(m, self)
         self._tags(m)
         m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
         if self._setup is not None:
@@ -190,7 +191,7 @@ class CentralBroadcastController(wiring.Component):
     def _count(self, m):
         """Clocks, scans, and clocks until ``done`` counts a strobe."""
         m.d.sync += [self._cycles.eq(self._cycles + 1),
-                     self._frame_cycles.eq(self._frame_cycles + 1)]
+                     self.frame_cycles.eq(self.frame_cycles + 1)]
         with m.If(self.broadcast.strobe):
             m.d.sync += self._settle.eq(BroadcastLines.settle_clocks)
         with m.Elif(self._settle != 0):
@@ -267,7 +268,7 @@ class CentralBroadcastController(wiring.Component):
                 self.announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
-                m.d.sync += [self._frame_cycles.eq(0), self._scans.eq(self.scan_start)]
+                m.d.sync += [self.frame_cycles.eq(0), self._scans.eq(self.scan_start)]
                 for place, background in enumerate(self._backgrounds):
                     with m.If(self.pictures.front != place):
                         m.d.sync += background.eq(self._body)
@@ -321,13 +322,15 @@ class CentralBroadcastController(wiring.Component):
     def _show(self, m):
         """From the end of a frame's commands until its picture is shown."""
         pictures = self.pictures
+        merges = "SWAP"
         with m.State("DRAWING"), m.If(self.quiet):
-            drawn = Signal.like(self._frame_cycles, name="drawn")
-            m.d.sync += drawn.eq(self._frame_cycles)
+            drawn = Signal.like(self.frame_cycles, name="drawn")
+            m.d.sync += drawn.eq(self.frame_cycles)
+            if self._nodes is not None:
+                merges = self._nodes.drawn(m)
             m.next = "REPORT_DRAWN"
         with m.State("REPORT_DRAWN"):
-            self.respond(m, ResponseKind.FRAME_DRAWN, drawn,
-                         "SWAP" if self._nodes is None else "REPORT_MERGED")
+            self.respond(m, ResponseKind.FRAME_DRAWN, drawn, merges)
         if self._nodes is not None:
             self._nodes.report_merged(m, self, drawn)
         with m.State("SWAP"), m.If(self.scan_start):

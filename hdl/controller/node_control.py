@@ -1,13 +1,15 @@
 """What the controller does besides, where merge cards end nodes."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream
+from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.words import Operation, response_fields
+from ..merging.tree_words import TreeLines
+from .tree_steps import TreeSteps
 
 __all__ = ["NodeControl"]
 
@@ -29,6 +31,8 @@ class NodeControl:
     read_scan: Out(1), scan_read: In(1), depths: In(stream of depth_bits)
         ``ScanReadBack``: to start it, that it is done, and what it reads.
         These and ``shown`` only where pictures are merged as they are scanned.
+    tree: Out(TreeLines)
+        Only where nodes merge in a tree.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -37,6 +41,10 @@ class NodeControl:
         self.units = Signal(commands.RESPONSE_VALUE_BITS, name="node_units")
         self.unsupported = Signal(name="node_unsupported")
         self.differ = Signal(name="nodes_differ")
+        #: The steps of a tree merge, and the clocks until they were done.
+        self.steps = (TreeSteps(node_bits=configuration.node_bits) if configuration.sends_drawn
+                      else None)
+        self.merged = Signal(commands.RESPONSE_VALUE_BITS, name="merged")
 
     @property
     def members(self):
@@ -44,6 +52,8 @@ class NodeControl:
         members["nodes"] = In(configuration.node_bits)
         if configuration.list_words:
             members["lists_full"] = In(1)
+        if configuration.sends_drawn:
+            members["tree"] = Out(TreeLines(node_bits=configuration.node_bits))
         if configuration.scans_rank:
             members |= {"shown": In(1), "read_scan": Out(1), "scan_read": In(1),
                         "depths": In(stream.Signature(configuration.depth_bits))}
@@ -85,10 +95,32 @@ class NodeControl:
         with m.State("REPORT_NODES"):
             controller.respond(m, ResponseKind.NODES, controller.nodes, then)
 
+    def add_steps(self, m, controller):
+        """Where nodes merge in a tree: what goes on beside the commands."""
+        if self.steps is None:
+            return
+        m.submodules.steps = steps = self.steps
+        wiring.connect(m, steps.lines, wiring.flipped(controller.tree))
+        m.d.comb += [steps.nodes.eq(controller.nodes), steps.quiet.eq(controller.quiet)]
+        with m.If(steps.done):
+            m.d.sync += self.merged.eq(controller.frame_cycles)
+
+    def drawn(self, m):
+        """Inside the clock in which all is drawn; returns the state after its report."""
+        if self.steps is None:
+            return "REPORT_MERGED"
+        m.d.comb += self.steps.start.eq(1)
+        return "MERGING"
+
     def report_merged(self, m, controller, drawn):
-        """The state after the report that all is drawn: here nothing is left to be merged."""
+        """The states after the report of the clocks until all was ``drawn``: where the scan merges,
+        nothing is left to be done."""
+        if self.steps is not None:
+            with m.State("MERGING"), m.If(self.steps.idle):
+                m.next = "REPORT_MERGED"
         with m.State("REPORT_MERGED"):
-            controller.respond(m, ResponseKind.MERGED, drawn, "SWAP")
+            controller.respond(m, ResponseKind.MERGED,
+                               drawn if self.steps is None else self.merged, "SWAP")
 
     def await_shown(self, m, controller):
         """The state after a swap: until every node shows the new picture, so that none is drawn

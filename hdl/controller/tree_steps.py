@@ -28,7 +28,9 @@ class TreeSteps(wiring.Component):
     nodes: In(node_bits)
         How many there are.
     start: In(1)
-        Begin; all is drawn.  Ignored while merging.
+        Begin; all is drawn.  Ignored unless ``idle``.
+    idle: Out(1)
+        No steps are made.
     done: Out(1)
         High for one clock at the end.
     quiet: In(1)
@@ -46,6 +48,7 @@ class TreeSteps(wiring.Component):
         super().__init__({
             "nodes": In(node_bits),
             "start": In(1),
+            "idle": Out(1),
             "done": Out(1),
             "quiet": In(1),
             "lines": Out(lines),
@@ -57,6 +60,7 @@ class TreeSteps(wiring.Component):
         distance = Signal(self.node_bits + 1, init=1)  # of the nodes that meet
         with m.FSM():
             with m.State("IDLE"):
+                m.d.comb += self.idle.eq(1)
                 m.d.sync += [lines.step.eq(0), distance.eq(1)]
                 with m.If(self.start):
                     m.next = "STEP"
