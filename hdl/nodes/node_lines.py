@@ -41,7 +41,7 @@ def connect_nodes(m: Module, configuration: MachineConfiguration, controller, ge
                           [element.broadcast for element in node.processing_elements])
     if configuration.list_words:
         fixed.d.comb += controller.lists_full.eq(reduce(or_, (card.lists_full for card in cards)))
-    if controller.configuration.sends_drawn:
+    if configuration.sends_drawn:
         connect_tree(m, controller, generator, nodes)
     else:
         _connect_chain(m, controller, generator, nodes)
