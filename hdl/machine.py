@@ -19,6 +19,7 @@ from .memory_unit.memory_unit import MemoryUnit
 from .nodes.chain_merge import ChainMerge
 from .nodes.merge_card import MergeCard
 from .nodes.node_lines import Node, connect_nodes
+from .nodes.tree_merge import TreeMerge
 from .observer import MachineActivity, activity_layout
 from .processing_element.processing_element import ProcessingElement
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
@@ -32,6 +33,7 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "processing_element": ProcessingElement,
     "memory_unit": MemoryUnit,
     "chain_merge": ChainMerge,
+    "tree_merge": TreeMerge,
     "video_scan_generator": VideoScanGenerator,
 }
 
@@ -129,7 +131,7 @@ class Machine(wiring.Component):
     @property
     def storages(self):
         """Every RAM whose contents outlast a frame: of memory units, and of lists."""
-        boards = [*(unit.memory for unit in self.memory_units), *self.merge_cards]
+        boards = [*self.memory_units, *self.merge_cards]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):

@@ -137,8 +137,8 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     as asked for, unless the options or the preset give the fraction bits.  Raises ``InputError``.
     """
     if options.retain and options.list_words is None:
-        raise InputError("--retain: without a scene nobody knows how many triangles its lists hold; "
-                         "give --list-words, or a scene")
+        raise InputError("--retain: without a scene nobody knows how many triangles its lists "
+                         "hold; give --list-words, or a scene")
     machine = MachineConfiguration(**DEFAULT_SIZE | options.machine())
     if not options.max_error:
         return machine

@@ -19,7 +19,7 @@ from ..backplane.words import (
 )
 from ..triangle_setup.triangle_setup import TriangleSetup
 from .frame_tags import FrameTags
-from .node_control import NodeControl
+from .node_control import node_control
 
 __all__ = ["CentralBroadcastController"]
 
@@ -46,6 +46,9 @@ class CentralBroadcastController(wiring.Component):
     one as late as ``TriangleSetup`` says.  Throughput: a prepared triangle a clock while
     every FIFO has room, another one as ``TriangleSetup`` says.
 
+    What is for nodes is only in machines that have them: ``nodes`` where merge cards end nodes,
+    ``lists_full`` with list memories, the next four in chains, ``tree`` in trees.
+
     Members
     -------
     commands: In(stream of command words)
@@ -63,18 +66,15 @@ class CentralBroadcastController(wiring.Component):
     more: Out(1)
         Triangles are offered or set up; only where the configuration says ``observe``.
     nodes: In(node_bits)
-        How many nodes there are, from the right end of the node lines; only where merge cards end
-        nodes.
+        How many there are, from the right end of the node lines.
     lists_full: In(1)
-        A triangle found no room in its node's list (wired or); only with list memories.
+        A triangle found no room in its node's list (wired or).
     shown: In(1)
         ``front`` at the right end of the scan chain.
-    read_scan: Out(1)
-        Begin to read the depths of the next scan.
-    scan_read: In(1)
-        High for one clock when the last of them has been taken.
-    depths: In(stream of depth words)
-        These and the three before only where pictures are merged as they are scanned.
+    read_scan: Out(1), scan_read: In(1), depths: In(stream of depth words)
+        Begin to read the depths of the next scan; the last one has been taken; these depths.
+    tree: Out(TreeLines)
+        To the tree merge cards.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -82,11 +82,11 @@ class CentralBroadcastController(wiring.Component):
         self.tags = FrameTags(tag_bits=configuration.tag_bits)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
-        self._nodes = NodeControl(configuration=configuration) if configuration.node_bits else None
+        self._nodes = node_control(configuration)
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
-        self._frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
+        self.frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
         self._scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
         # What the cage is: units that are somebody's, shares that are not as large as they must be,
         # whether the cards can interlace so many units, and the resolution as it is reported.
@@ -109,7 +109,7 @@ class CentralBroadcastController(wiring.Component):
             "pictures": Out(PictureLines(configuration)),
             "background": Out(COLOR_BITS),
             **({"more": Out(1)} if configuration.observe else {}),
-            **({} if self._nodes is None else self._nodes.members),
+            **self._nodes.members,
         })
 
     def elaborate(self, platform):
@@ -120,8 +120,7 @@ class CentralBroadcastController(wiring.Component):
         self._count(m)
         self._picture(m)
         self._count_owned(m)
-        if self._nodes is not None:
-            self._nodes.count(m, self)
+        self._nodes.add_to(m, self)
         self._tags(m)
         m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
         if self._setup is not None:
@@ -203,7 +202,7 @@ class CentralBroadcastController(wiring.Component):
     def _count(self, m):
         """Clocks, scans, and clocks until ``done`` counts a strobe."""
         m.d.sync += [self._cycles.eq(self._cycles + 1),
-                     self._frame_cycles.eq(self._frame_cycles + 1)]
+                     self.frame_cycles.eq(self.frame_cycles + 1)]
         with m.If(self.broadcast.strobe):
             m.d.sync += self._settle.eq(BroadcastLines.settle_clocks)
         with m.Elif(self._settle != 0):
@@ -239,17 +238,13 @@ class CentralBroadcastController(wiring.Component):
             self.announce(m, Operation.SURVEY, "SURVEYING")
         with m.State("SURVEYING"), m.If(self.quiet):
             m.next = "REPORT_UNITS"
-        nodes = self._nodes
         with m.State("REPORT_UNITS"):
             self.respond(m, ResponseKind.UNITS, response_value(
-                ResponseKind.UNITS, total=self.total if nodes is None else nodes.units,
-                owned=self._owned), "CHECK_UNITS" if nodes is None else "REPORT_NODES")
-        if nodes is not None:
-            nodes.report_nodes(m, self, "CHECK_UNITS")
+                ResponseKind.UNITS, total=self._nodes.all_units(self), owned=self._owned),
+                          self._nodes.after_units)
         with m.State("CHECK_UNITS"):
             m.next = "INITIALISE"
-            with m.If(self.unsupported_units if nodes is None
-                      else self.unsupported_units | nodes.refused):
+            with m.If(self._nodes.refused(self)):
                 m.next = "REFUSE"
         with m.State("INITIALISE"):
             m.d.comb += self.pictures.initialise.eq(1)
@@ -280,7 +275,7 @@ class CentralBroadcastController(wiring.Component):
                 self.announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
-                m.d.sync += [self._frame_cycles.eq(0), self._scans.eq(self.scan_start)]
+                m.d.sync += [self.frame_cycles.eq(0), self._scans.eq(self.scan_start)]
                 for place, background in enumerate(self._backgrounds):
                     with m.If(self.pictures.front != place):
                         m.d.sync += background.eq(self._body)
@@ -288,12 +283,10 @@ class CentralBroadcastController(wiring.Component):
             with m.Case(Opcode.FRAME_END):
                 m.d.comb += self.commands.ready.eq(1)
                 m.next = "DRAWING"
-            if self._nodes is not None:
-                self._nodes.list_commands(m, self)
+            self._nodes.commands(m, self)
             for opcode, operation in ((Opcode.READ_DEPTH, Operation.READ_DEPTH),
                                       (Opcode.READ_COUNTERS, Operation.READ_COUNTERS)):
-                if opcode == Opcode.READ_DEPTH and self.configuration.scans_rank:
-                    self._nodes.read_depth(m, self)
+                if opcode in self._nodes.opcodes:
                     continue
                 with m.Case(opcode):
                     self.announce(m, operation, "ANSWERING", when=self.quiet)
@@ -327,37 +320,31 @@ class CentralBroadcastController(wiring.Component):
             self.respond(m, ResponseKind.ERROR, Fault.UNKNOWN_COMMAND, "COMMAND")
         with m.State("ANSWERING"), m.If(self.quiet):
             m.next = "COMMAND"
-        if self._nodes is not None:
-            self._nodes.list_states(m, self)
-            self._nodes.read_states(m, self)
+        self._nodes.states(m, self)
 
     def _show(self, m):
         """From the end of a frame's commands until its picture is shown."""
         pictures = self.pictures
         with m.State("DRAWING"), m.If(self.quiet):
-            drawn = Signal.like(self._frame_cycles, name="drawn")
-            m.d.sync += drawn.eq(self._frame_cycles)
+            drawn = Signal.like(self.frame_cycles, name="drawn")
+            m.d.sync += drawn.eq(self.frame_cycles)
+            merges = self._nodes.drawn(m)
             m.next = "REPORT_DRAWN"
         with m.State("REPORT_DRAWN"):
-            self.respond(m, ResponseKind.FRAME_DRAWN, drawn,
-                         "SWAP" if self._nodes is None else "REPORT_MERGED")
-        if self._nodes is not None:
-            self._nodes.report_merged(m, self, drawn)
+            self.respond(m, ResponseKind.FRAME_DRAWN, drawn, merges)
+        self._nodes.report_merged(m, self, drawn)
         with m.State("SWAP"), m.If(self.scan_start):
             # Every pixel of the scan that begins here is fetched after this edge.
             shown = Signal.like(self._scans, name="shown")
             m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(self._scans)]
-            m.next = "REPORT_SHOWN" if self._nodes is None else self._nodes.after_swap
-        if self._nodes is not None:
-            self._nodes.await_shown(m, self)
+            m.next = self._nodes.after_swap
         with m.State("REPORT_SHOWN"):
             self.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
 
     def _refuse(self, m):
         """The machine does not draw: an error at boot and in answer to every command."""
         with m.State("REFUSE"):
-            self.respond(m, ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED if self._nodes is None
-                         else self._nodes.fault(self), "REFUSED")
+            self.respond(m, ResponseKind.ERROR, self._nodes.fault(self), "REFUSED")
         with m.State("REFUSED"):
             m.d.comb += self.commands.ready.eq(1)
             with m.If(self.commands.valid):

@@ -1,7 +1,7 @@
 """A memory unit card: a share of the pixels, numbered by the backplane."""
 
 from amaranth.hdl import *
-from amaranth.lib import data, wiring
+from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
@@ -11,6 +11,7 @@ from ..mapping.interlace import ScanAddress
 from ..wires import wires
 from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
+from .send_part import SendPart
 from .tag_sweep import TagSweep
 from .two_port_memory import TwoPortMemory
 from .word_parts import pixel_layout, word_parts
@@ -49,6 +50,8 @@ class MemoryUnit(wiring.Component):
         Number of memory units in the cage.
     scan: In(ScanLines)
     pictures: In(PictureLines)
+    merge: In(SendLines)
+        Only where nodes merge in a tree (``SendPart``).
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -58,13 +61,21 @@ class MemoryUnit(wiring.Component):
         self.memory: OnePortMemory | TwoPortMemory = kind(
             words=configuration.words, depth_bits=configuration.rank_bits,
             tag_bits=configuration.tag_bits, parts=self._parts)
+        self._send = SendPart(configuration=configuration) if configuration.sends_drawn else None
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
             "scan": In(ScanLines(configuration)),
             "pictures": In(PictureLines(configuration)),
+            **({} if self._send is None else self._send.members),
         })
+
+    @property
+    def storages(self) -> list[memory.Memory]:
+        """The RAM of the words, and that which says which of them were drawn."""
+        drawn = [] if self._send is None else self._send.storages
+        return [*self.memory.storages, *drawn]
 
     def elaborate(self, platform):
         m = Module()
@@ -83,6 +94,8 @@ class MemoryUnit(wiring.Component):
                                if part.picture is not None])
         self._serve(m, number, current)
         self._sweep(m, current)
+        if self._send is not None:
+            self._send.add_to(m, self, *self._depth_read(current))
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))

@@ -12,6 +12,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ..lines_to_all import connect_broadcast, connect_pictures, connect_scan
 from ..wires import wires
 from .merge_card import MergeCard
+from .tree_lines import connect_tree
 
 __all__ = ["Node", "connect_nodes"]
 
@@ -40,7 +41,10 @@ def connect_nodes(m: Module, configuration: MachineConfiguration, controller, ge
                           [element.broadcast for element in node.processing_elements])
     if configuration.list_words:
         fixed.d.comb += controller.lists_full.eq(reduce(or_, (card.lists_full for card in cards)))
-    _connect_chain(m, controller, generator, nodes)
+    if configuration.sends_drawn:
+        connect_tree(m, controller, generator, nodes)
+    else:
+        _connect_chain(m, controller, generator, nodes)
 
 
 def _connect_chain(m, controller, generator, nodes):

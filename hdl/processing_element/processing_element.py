@@ -1,7 +1,7 @@
 """A processing element card: draws into the memory units to its right."""
 
 from amaranth.hdl import *
-from amaranth.lib import fifo, wiring
+from amaranth.lib import fifo, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.activity import ACTIVITY_BITS
@@ -16,13 +16,14 @@ from ..depth_test.two_ports import TwoPortDepthTest
 from ..mapping.interlace import PixelAddress
 from ..observer import ElementActivity
 from ..rasteriser.fragment_stepper import FragmentStepper
-from ..rasteriser.interpolator import Interpolator
+from ..rasteriser.interpolator import Interpolator, fragment_layout
 from ..rasteriser.triangle_spans import TriangleSpans
 from ..wires import wires
 from .broadcast_queue import BroadcastQueue
 from .control import ProcessingElementControl
 from .depth_read_back import DepthReadBack
 from .memory_bus_selector import MemoryBusSelector
+from .merge_input import MergeInput
 from .survey import Survey
 
 __all__ = ["ProcessingElement"]
@@ -58,6 +59,9 @@ class ProcessingElement(wiring.Component):
     total: In(id_bits)
         Number of memory units in the cage.
     broadcast: In(BroadcastLines)
+    merge: In(stream of fragment_layout)
+        What its node receives, only where nodes merge in a tree; nothing is drawn then
+        (``MergeInput``).
     activity: Out(4)
         What it does in this clock; only where the configuration says ``observe``.
     """
@@ -80,11 +84,14 @@ class ProcessingElement(wiring.Component):
         self._link = ResponseLink()
         self._picture = PixelAddress(configuration=configuration)
         self._selector = MemoryBusSelector(**bits)
+        self._merge = MergeInput(**bits) if configuration.sends_drawn else None
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
             "broadcast": In(BroadcastLines(configuration)),
+            **({"merge": In(stream.Signature(fragment_layout(**bits)))}
+               if self._merge is not None else {}),
             **({"activity": Out(ACTIVITY_BITS)} if configuration.observe else {}),
         })
 
@@ -155,7 +162,27 @@ class ProcessingElement(wiring.Component):
         wiring.connect(pipeline, queue.triangles, rasteriser.triangles)
         wiring.connect(pipeline, queue.planes, interpolator.planes)
         wiring.connect(pipeline, stepper.pixels, interpolator.pixels)
-        wiring.connect(pipeline, interpolator.fragments, depth_test.fragments)
+        if self._merge is None:
+            wiring.connect(pipeline, interpolator.fragments, depth_test.fragments)
+        else:
+            self._connect_merge(m, pipeline, self._merge)
+
+    def _connect_merge(self, m, pipeline, merge):
+        """What the node receives goes to the depth test when nothing is drawn."""
+        m.submodules.merge_input = merge
+        wiring.connect(pipeline, self._interpolator.fragments, merge.drawn)
+        wiring.connect(pipeline, merge.fragments, self.depth_test.fragments)
+        wiring.connect(pipeline, wiring.flipped(self.merge), merge.received)
+        pipeline.d.comb += [
+            merge.first.eq(self.left.id),
+            merge.end.eq(self._survey.end),
+            merge.frame_start.eq(self._control.frame_start),
+        ]
+
+    @property
+    def _drawn(self):
+        """The fragments that the element draws itself."""
+        return self.depth_test.fragments if self._merge is None else self._merge.drawn
 
     def _connect_domain(self, m):
         """First unit from the ID lines, upper end from the survey."""
@@ -204,12 +231,14 @@ class ProcessingElement(wiring.Component):
 
     def _count(self, m):
         """Work since the frame start."""
-        control, arriving = self._control, self.depth_test.fragments
+        control, arriving, drawing = self._control, self._drawn, self._control.drawing
+        if self._merge is not None:
+            drawing &= ~self._merge.merging
         fragments = Signal(RESPONSE_VALUE_BITS)
         busy_cycles = Signal(RESPONSE_VALUE_BITS)
         m.d.sync += [
             fragments.eq(fragments + (arriving.valid & arriving.ready)),
-            busy_cycles.eq(busy_cycles + control.drawing),
+            busy_cycles.eq(busy_cycles + drawing),
         ]
         with m.If(control.frame_start):
             m.d.sync += [fragments.eq(0), busy_cycles.eq(0)]
@@ -220,7 +249,7 @@ class ProcessingElement(wiring.Component):
         rasteriser, control = self._rasteriser, self._control
         m.submodules.observer = observer = ElementActivity(
             delay=SPANS_LATENCY + FragmentStepper.latency + Interpolator.latency)
-        fragments, scanned = self.depth_test.fragments, self.right.lines.scanned
+        fragments, scanned = self._drawn, self.right.lines.scanned
         m.d.comb += [
             observer.offered.eq(fragments.valid),
             observer.taken.eq(fragments.valid & fragments.ready),

@@ -1,0 +1,140 @@
+"""Nodes that merge in a tree when all is drawn: pixels, what is sent, and how long it takes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from frames import PIXEL, SCREEN, check, joined, random_list, triangles
+from wide_machines import wide_machine
+
+from cardcage.golden.merging.node_picture import node_pictures
+from cardcage.golden.merging.traffic import Traffic
+from cardcage.golden.merging.tree import merge_tree
+from cardcage.golden.organisations.organisation_of import organisation_of
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Opcode
+from cardcage.testbenches.engines.engine import Job
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+from cardcage.testbenches.frames.conversation import responses_owed
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.frames.simulation import simulate
+
+
+def traffic_of(configuration, display_list):
+    """What golden says that the nodes send."""
+    organisation = organisation_of(configuration)
+    _, traffic = merge_tree(node_pictures(
+        display_list, organisation.shares(display_list.triangles),
+        order_bits=configuration.order_bits, **organisation.resolution.shifts))
+    return traffic
+
+
+def sent_by_node(traffic):
+    sent = [0] * traffic.nodes
+    for send in traffic.sends:
+        sent[send.sender] += send.pixels
+    return sent
+
+
+def same_depths(count, seed):
+    """Whole screens of few depths, so that nodes tie in most pixels."""
+    source = np.random.default_rng(seed)
+    return triangles([SCREEN] * count, source.integers(7, 9, (count, 1)).repeat(3, axis=1),
+                     source.integers(0, 256, (count, 1, 3)).repeat(3, axis=1))
+
+
+CAGES = {
+    "two of one unit, in turn": ("2x(PMT)", {"packet": 1}),
+    "three of two, a run each": ("3x(PMMT)", {"packet": "contiguous"}),
+    "four of two, in turn": ("4x(PMMT)", {"packet": 1}),
+    "four, two ports": ("4x(PMMT)", {"packet": 2, "memory_ports": 2}),
+    "three of two elements, two ports": ("3x(PMPMT)", {"packet": 3, "memory_ports": 2}),
+    "unequal shares of a node": ("2x(PMPMMMT)", {"packet": 1}),
+    "coarser, words for a quarter": ("2x(PMMT)", {"packet": 1, "words": 8}),
+    "one node, which merges with nobody": ("PMMT", {}),
+}
+
+
+@pytest.mark.parametrize("cage", CAGES)
+@pytest.mark.parametrize("seed", range(2))
+def test_whole_frames(cage, seed):
+    """From random memory, the second with a host that stalls; ties between nodes in half of it."""
+    cards, options = CAGES[cage]
+    listed = joined(random_list((seed, cage.encode()[0]), 24), same_depths(6, seed))
+    configuration = wide_machine(listed, cards=cards, clocks_per_pixel=2, **options)
+    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=seed,
+                          stall_seed=seed or None)
+    check(configuration, listed, simulation)
+    traffic = traffic_of(configuration, listed)
+    assert list(simulation.sent) == sent_by_node(traffic)
+    assert bool(traffic.pixels) == (configuration.nodes > 1)
+    assert simulation.merge_cycles > simulation.draw_cycles
+
+
+@pytest.mark.parametrize("ports", [1, 2])
+def test_many_frames(ports):
+    """Past the last tag; nothing of a frame that was sent, or that nobody ended, is sent again."""
+    kinds = (lambda n: random_list((7, n), 9), lambda n: triangles([], [], [], background=(n,) * 3),
+             lambda n: same_depths(5, n),
+             lambda n: triangles([PIXEL] * 3, [[n] * 3] * 3, [[[n, 1, k]] * 3 for k in range(3)]))
+    lists = [kinds[number % 4](number) for number in range(14)]
+    abandoned = (2, 4, 9)
+    configuration = max((wide_machine(
+        listed, cards="3x(PMMT)", clocks_per_pixel=2, tag_bits=2, memory_ports=ports,
+        shading="gouraud") for listed in lists), key=lambda machine: machine.fraction_bits)
+    words = []
+    for number, listed in enumerate(lists):
+        words += frame_commands(configuration, listed)
+        if number in abandoned:
+            words.pop()
+        else:
+            words += [commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+    job = Job(configuration, commands=words, memory_seed=ports, stall_seed=ports,
+              responses=responses_owed(organisation_of(configuration), words),
+              maximum_cycles=len(lists) * 60 * configuration.cycles_per_scan)
+    answers = Answers(configuration, PysimEngine().run(job))
+    finished = [listed for number, listed in enumerate(lists) if number not in abandoned]
+    assert answers.frames == len(finished)
+    for number, listed in enumerate(finished):
+        simulation = answers.frame(number, reading=number)
+        check(configuration, listed, simulation)
+        assert list(simulation.sent) == sent_by_node(traffic_of(configuration, listed))
+
+
+def bar(traffic: Traffic, words: int) -> float:
+    """Clocks in which all has to be merged, of units with two ports."""
+    steps = traffic.steps
+    return 1.05 * sum(steps) + sum(64 + 4 * 2**step + words / 4096 for step in range(len(steps)))
+
+
+@pytest.mark.parametrize("drawn", ["everything", "a pixel", "nothing"])
+def test_a_pixel_a_clock_and_little_else(drawn, record_property):
+    """The longest list of each step, and a few clocks for the step and for each unit."""
+    listed = {"everything": same_depths(8, 1), "nothing": triangles([], [], []),
+              "a pixel": triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4)}[drawn]
+    listed = replace(listed, width=32, height=32, position=listed.position * 4)
+    configuration = wide_machine(listed, cards="4x(PMMMMT)", clocks_per_pixel=2, memory_ports=2,
+                                 packet=1)
+    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=3)
+    check(configuration, listed, simulation)
+    traffic = traffic_of(configuration, listed)
+    clocks = simulation.merge_cycles - simulation.draw_cycles
+    assert traffic.steps == {"everything": [1024] * 2, "nothing": [0] * 2}.get(
+        drawn, traffic.steps)
+    assert clocks <= bar(traffic, configuration.words)
+    overhead = clocks - sum(traffic.steps)
+    assert overhead <= 2 * 30
+    record_property("measured", f"4x(PMMMMT), {drawn} drawn: {clocks} clocks to merge, {overhead} "
+                                f"more than the pixels sent")
+
+
+def test_nodes_send_nothing_more_than_was_drawn():
+    """A machine of whose nodes only the last draws."""
+    listed = triangles([PIXEL, PIXEL, SCREEN], [[9] * 3, [8] * 3, [4] * 3],
+                       [[[7, 8, 9]] * 3] * 3)
+    configuration = wide_machine(listed, cards="3x(PMT)", clocks_per_pixel=2, packet="contiguous")
+    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=3)
+    check(configuration, listed, simulation)
+    assert list(simulation.sent) == [0, 1, 64]
+    assert [work.fragments for work in simulation.work] == [1, 1, 64]
