@@ -182,7 +182,8 @@ class _Bench:
         """The cycle from which no pixel on the pins was read before the pictures were black."""
         assert self._booted is not None
         held = _PIXELS_HELD * self.job.configuration.clocks_per_pixel
-        return self._booted + PIN_LATENCY + held
+        chain = self.job.configuration.nodes  # a pixel may pass so many merge cards
+        return self._booted + PIN_LATENCY + chain + held
 
     def _watch_pins(self) -> bool:
         """Whether this was the first clock of a pixel."""
