@@ -75,8 +75,8 @@ MUTANTS_ON_PIXELS_HIT_TWICE = {
         "read_here & access.read_busy)", "read_here & access.write)"),
     "front and back colours exchanged": (
         "memory_unit.memory_unit", "MemoryUnit", ["machine"],
-        "Mux(pictures.front, access.color[1].value, access.color[0].value)",
-        "Mux(pictures.front, access.color[0].value, access.color[1].value)"),
+        "Mux(pictures.front, pictures_read[1].value, pictures_read[0].value)",
+        "Mux(pictures.front, pictures_read[0].value, pictures_read[1].value)"),
     "pictures are never swapped": (
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "front.eq(~pictures.front)", "front.eq(pictures.front)"),
@@ -122,7 +122,8 @@ MUTANTS_IN_SCANS = {
         "with m.If(access.scan):", "with m.If(access.scan & ~access.write & ~access.read):"),
     "depths of all frames are compared": (
         "memory_unit.memory_unit", "MemoryUnit", ["machine"],
-        "Mux(current, access.depth.value", "Mux(access.depth.tag.any(), access.depth.value"),
+        "return current[place], access.depth.value",
+        "return access.depth.tag.any(), access.depth.value"),
 }
 
 MUTANTS_IN_MANY_FRAMES = {
@@ -141,7 +142,7 @@ MUTANTS_OF_OLD_WORDS = {
         "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
     "a frame starts before all are done": (
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "when=self._quiet & self.tags.ready", "when=self.tags.ready"),
+        "when=self.quiet & self.tags.ready", "when=self.tags.ready"),
 }
 
 
