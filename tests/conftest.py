@@ -1,6 +1,7 @@
 """What all tests share: ``library/`` is importable, some tests are marked quick, and what tests
 measure is shown at the end."""
 
+import gc
 import sys
 from pathlib import Path
 
@@ -47,6 +48,12 @@ def pytest_collection_modifyitems(items):
         if place.parts[0] in QUICK and place.as_posix() not in NOT_QUICK:
             item.add_marker(pytest.mark.quick)
     items.sort(key=_slow_first)
+
+
+def pytest_collection_finish():
+    """What all tests share stays to the end: no later collection of garbage looks at it again."""
+    gc.collect()
+    gc.freeze()
 
 
 def _slow_first(item):

@@ -56,7 +56,7 @@ class Ports:
                    for served in self.served)
 
 
-def draw_twice(monkeypatch, ports, size=48, **machine):
+def draw_twice(monkeypatch, ports, size=32, **machine):
     """A right triangle with its corners at the centres of pixels, and again, sloped and nearer."""
     right = [[0.5, 0.5], [size - 0.5, 0.5], [0.5, size - 0.5]]
     depth = np.array([[3000, 2500, 2000], [2900, 2400, 1900]])

@@ -10,29 +10,13 @@ import numpy as np
 import pytest
 from frames import check_frames, check_scans, draw, many_frames, random_list, spans_twice, triangles
 
+from cardcage.testbenches.engines.pysim_engine import PysimEngine
+
 #: How a machine that is wrong shows.
 FAILURES = (AssertionError, TimeoutError, RuntimeError, ValueError, IndexError)
 
-#: name → (module, its class, where it is used, right, wrong)
-MUTANTS = {
-    "comparator takes the farther": (
-        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
-        "compare.depth < nearest", "compare.depth > nearest"),
-    "comparator lets ties replace": (
-        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
-        "compare.depth < nearest", "compare.depth <= nearest"),
-    "comparison without forwarding": (
-        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
-        "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
-    "a winner written last is forgotten too soon": (
-        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
-        "has_written.eq(1)", "has_written.eq(0)"),
-    "a winner written last is remembered too long": (
-        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
-        "m.d.sync += has_written.eq(0)", "pass"),
-    "depth of the span's first pixel all along": (
-        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
-        "pixel.x_steps.eq(span.x - span.left)", "pixel.x_steps.eq(span.end - 1 - span.left)"),
+#: name → (module, its class, where it is used, right, wrong); in lists by what tells them.
+MUTANTS_IN_RANDOM_LISTS = {
     "edges without their fraction": (
         "rasteriser.edge_columns", "EdgeColumns", ["rasteriser.triangle_spans"],
         "first.eq(start + words[0])", "first.eq(start + (words[0]"
@@ -44,19 +28,39 @@ MUTANTS = {
         "rasteriser.triangle_rows", "TriangleRows", ["rasteriser.triangle_spans"],
         "self._after_base >= self._triangle.bottom",
         "self._after_base + 1 >= self._triangle.bottom"),
-    "one row where there are two": (
-        "processing_element.broadcast_queue", "BroadcastQueue",
-        ["processing_element.processing_element"],
-        "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
-    "a span ends a pixel late": (
-        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
-        "end.eq(extent.beyond)", "end.eq(extent.beyond + 1)"),
     "row step added twice": (
         "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
         "delayed(m, x + y, 1,", "delayed(m, x + y + y, 1,"),
-    "odd limbs left out": (
-        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
-        "sum(words[1:], words[0])", "words[0]"),
+    "survey takes silence for an answer": (
+        "processing_element.survey", "Survey", ["processing_element.processing_element"],
+        "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
+    "a frame ends before all are done": (
+        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "self.broadcast.done & (self._settle == 0)", "self._settle == 0"),
+    "columns step one pixel instead of the lattice's stride": (
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
+        "span.x + span.stride", "span.x + 1"),
+}
+
+MUTANTS_ON_EDGES = {
+    "comparator lets ties replace": (
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
+        "compare.depth < nearest", "compare.depth <= nearest"),
+}
+
+MUTANTS_ON_PIXELS_HIT_TWICE = {
+    "comparator takes the farther": (
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
+        "compare.depth < nearest", "compare.depth > nearest"),
+    "comparison without forwarding": (
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
+        "Mux(waiting, write.depth, ", "Mux(0, write.depth, "),
+    "a winner written last is forgotten too soon": (
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
+        "has_written.eq(1)", "has_written.eq(0)"),
+    "a span ends a pixel late": (
+        "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
+        "end.eq(extent.beyond)", "end.eq(extent.beyond + 1)"),
     "a triangle kept from the element that has its last column": (
         "processing_element.share_filter", "ShareFilter", ["processing_element.broadcast_queue"],
         "< triangle.right", "< triangle.right - 1"),
@@ -66,44 +70,34 @@ MUTANTS = {
     "ID chain counts by two": (
         "backplane.id_increment", "IdIncrement", ["memory_unit.memory_unit"],
         "self.left + 1", "self.left + 2"),
-    "scan slot ignored: the element has the port": (
-        "memory_unit.one_port_memory", "OnePortMemory", ["memory_unit.memory_unit"],
-        "with m.If(access.scan):", "with m.If(access.scan & ~access.write & ~access.read):"),
     "busy not shown to a read in a scan slot": (
         "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "read_here & access.read_busy)", "read_here & access.write)"),
+    "front and back colours exchanged": (
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "Mux(pictures.front, pictures_read[1].value, pictures_read[0].value)",
+        "Mux(pictures.front, pictures_read[0].value, pictures_read[1].value)"),
+    "pictures are never swapped": (
+        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "front.eq(~pictures.front)", "front.eq(pictures.front)"),
+}
+
+MUTANTS_ON_SPANS_DRAWN_TWICE = {
+    "depth of the span's first pixel all along": (
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
+        "pixel.x_steps.eq(span.x - span.left)", "pixel.x_steps.eq(span.end - 1 - span.left)"),
+    "odd limbs left out": (
+        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
+        "sum(words[1:], words[0])", "words[0]"),
     "output register captured a clock early": (
         "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "with m.If(captured):", "with m.If(scan_read):"),
-    "front and back colours exchanged": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
-        "Mux(pictures.front, access.color[1].value, access.color[0].value)",
-        "Mux(pictures.front, access.color[0].value, access.color[1].value)"),
-    "survey takes silence for an answer": (
-        "processing_element.survey", "Survey", ["processing_element.processing_element"],
-        "answered.eq(memory.read_data == pattern)", "answered.eq(memory.read_data != pattern)"),
     "memory is not initialised": (
         "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
         "Mux(overwritten, 0, left)", "Mux(overwritten | everything, 0, left)"),
-    "old tags are not swept out": (
-        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
-        "Mux(overwritten, 0, left)", "Mux(everything, left, 0)"),
     "passes stop half way": (
         "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
         "following[-1] if wraps", "following[-2] if wraps"),
-    "depths of all frames are compared": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
-        "Mux(current, access.depth.value", "Mux(access.depth.tag.any(), access.depth.value"),
-    "colours of all frames are shown": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
-        "drawn.eq(Mux(pictures.front, current[1], current[0]))",
-        "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
-    "a tag is given out before a pass ends": (
-        "controller.frame_tags", "FrameTags", ["controller.central_broadcast_controller"],
-        "m.If(self.swept)", "m.If(1)"),
-    "a frame starts before all are done": (
-        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "when=self._quiet & self.tags.ready", "when=self.tags.ready"),
     "with two ports the winner a clock ahead is not seen": (
         "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(follows & winning, write.depth, stored)", "stored"),
@@ -113,19 +107,46 @@ MUTANTS = {
     "with two ports a read beside a write sees the old word": (
         "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
         "Mux(wrote, written.depth, ", "Mux(0, written.depth, "),
-    "pictures are never swapped": (
+}
+
+MUTANTS_IN_SCANS = {
+    "a winner written last is remembered too long": (
+        "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
+        "m.d.sync += has_written.eq(0)", "pass"),
+    "one row where there are two": (
+        "processing_element.broadcast_queue", "BroadcastQueue",
+        ["processing_element.processing_element"],
+        "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
+    "scan slot ignored: the element has the port": (
+        "memory_unit.one_port_memory", "OnePortMemory", ["memory_unit.memory_unit"],
+        "with m.If(access.scan):", "with m.If(access.scan & ~access.write & ~access.read):"),
+    "depths of all frames are compared": (
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "return current[place], access.depth.value",
+        "return access.depth.tag.any(), access.depth.value"),
+}
+
+MUTANTS_IN_MANY_FRAMES = {
+    "old tags are not swept out": (
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
+        "Mux(overwritten, 0, left)", "Mux(everything, left, 0)"),
+    "a tag is given out before a pass ends": (
+        "controller.frame_tags", "FrameTags", ["controller.central_broadcast_controller"],
+        "m.If(self.swept)", "m.If(1)"),
+}
+
+MUTANTS_OF_OLD_WORDS = {
+    "colours of all frames are shown": (
+        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "drawn.eq(Mux(pictures.front, current[1], current[0]))",
+        "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
+    "a frame starts before all are done": (
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "front.eq(~pictures.front)", "front.eq(pictures.front)"),
-    "a frame ends before all are done": (
-        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
-        "self.broadcast.done & (self._settle == 0)", "self._settle == 0"),
-    "columns step one pixel instead of the lattice's stride": (
-        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
-        "span.x + span.stride", "span.x + 1"),
+        "when=self.quiet & self.tags.ready", "when=self.tags.ready"),
 }
 
 
-#: The same, of what only squares of pixels use.
+#: Of what only squares of pixels use.
 MUTANTS_IN_SQUARES = {
     "a square ends a pixel late": (
         "rasteriser.span_clip", "SpanClip", ["rasteriser.triangle_spans"],
@@ -169,27 +190,39 @@ def mutate(monkeypatch, module_name, class_name, users, right, wrong):
                 monkeypatch.setitem(used.BOARDS, name, wrong_class)
 
 
-def check_machine():
-    """The frames that tell every mutant from the machine."""
+def check_random_lists():
     draw(random_list(5, 12), cards="PMMPMM", seed=2)
-    # Edges on the half-pixel grid with few sub-pixel bits, so that every kind of remainder
-    # occurs, and equal depths.
+
+
+def check_edges():
+    """On the half-pixel grid with few sub-pixel bits, so that every kind of remainder occurs; and
+    equal depths."""
     source = np.random.default_rng(3)
     draw(triangles(source.integers(-2, 20, (16, 3, 2)) / 2,
                    source.integers(0, 3, (16, 1)).repeat(3, axis=1),
                    source.integers(0, 256, (16, 3, 3)), sub_bits=1), cards="PMMPMM", seed=3)
-    # Each pixel is hit twice in a row, the farther second, while the one port is a bottleneck.
+
+
+def check_pixels_hit_twice():
+    """In a row, the farther second, while the one port is a bottleneck."""
     pixels = [[[x + 0.1, y + 0.1], [x + 1.4, y + 0.1], [x + 0.1, y + 1.4]]
               for y in range(8) for x in range(8)]
     draw(triangles(np.repeat(pixels, 2, axis=0), [[100] * 3, [200] * 3] * 64,
                    [[[1, 2, 3]] * 3, [[200, 100, 50]] * 3] * 64), cards="PM", seed=4)
-    check_scans()  # the processing element is busy while the old picture is shown
+
+
+def check_two_ports():
     draw(spans_twice(), cards="PM", seed=5, memory_ports=2)
-    # Past the last tag more than once, and with so many that old words stay; some frames are
-    # started over before they are drawn.
-    for ports, tag_bits in ((1, 2), (2, 4)):
-        check_frames(many_frames(9), tag_bits=tag_bits, memory_ports=ports, abandoned={2, 5, 6},
-                     seed=6)
+
+
+def check_many_frames(ports=1, tag_bits=2):
+    """Past the last tag more than once; some frames are started over before they are drawn."""
+    check_frames(many_frames(9), tag_bits=tag_bits, memory_ports=ports, abandoned={2, 5, 6}, seed=6)
+
+
+def check_old_words():
+    """So many tags that old words stay."""
+    check_many_frames(ports=2, tag_bits=4)
 
 
 def check_squares():
@@ -197,7 +230,7 @@ def check_squares():
     assert sum(work.fragments for work in simulation.work) > 150
 
 
-#: The same in a skewed machine of one unit each.
+#: In a skewed machine of one unit each.
 MUTANTS_SKEWED = {
     "a unit number without the bit of x": (
         "mapping.interlace", "PixelAddress", ["rasteriser.interpolator"],
@@ -215,7 +248,7 @@ def check_skewed():
     draw(random_list(11, 20), cards="4x(PM)", skew=True, seed=2)
 
 
-#: The same, of the two lanes that share the memory bus to one-port units.
+#: Of the two lanes that share the memory bus to one-port units.
 MUTANTS_OF_LANES = {
     "fragments of a pixel in either lane": (
         "depth_test.one_port", "OnePortDepthTest", ["processing_element.processing_element"],
@@ -242,8 +275,27 @@ def check_lanes():
     draw(replace(rows, depth=depth), cards="PMM", skew=True, seed=4)
 
 
-CHECKS = {check_machine: MUTANTS, check_squares: MUTANTS_IN_SQUARES, check_skewed: MUTANTS_SKEWED,
+#: The frames that tell each mutant from the machine, the shortest that do.
+CHECKS = {check_random_lists: MUTANTS_IN_RANDOM_LISTS, check_edges: MUTANTS_ON_EDGES,
+          check_pixels_hit_twice: MUTANTS_ON_PIXELS_HIT_TWICE,
+          check_two_ports: MUTANTS_ON_SPANS_DRAWN_TWICE,
+          check_scans: MUTANTS_IN_SCANS,  # the element is busy while the old picture is shown
+          check_many_frames: MUTANTS_IN_MANY_FRAMES, check_old_words: MUTANTS_OF_OLD_WORDS,
+          check_squares: MUTANTS_IN_SQUARES, check_skewed: MUTANTS_SKEWED,
           check_lanes: MUTANTS_OF_LANES}
+
+
+class Impatient(PysimEngine):
+    """The longest of these runs takes the machine itself 4,230 cycles; one that hangs is not
+    waited for much longer."""
+
+    def run(self, job, progress=None):
+        return super().run(replace(job, maximum_cycles=5000), progress)
+
+
+@pytest.fixture(autouse=True)
+def impatient(monkeypatch):
+    monkeypatch.setattr("frames.PysimEngine", Impatient)
 
 
 @pytest.mark.parametrize("check", CHECKS)

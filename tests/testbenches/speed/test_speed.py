@@ -239,7 +239,7 @@ def verilator_alone(monkeypatch):
 @pytest.mark.usefixtures("verilator_alone")
 def test_one_port_within_five_percent_of_its_bound(tmp_path):
     """Small triangles: rows without fragments, unequal work, and two accesses a fragment."""
-    bench("random_bbox16", "--elements", "16", "--units", "1", "--ports", "1", "--json",
+    bench("random_bbox16", "--elements", "8", "--units", "1", "--ports", "1", "--json",
           tmp_path / "b.json")
     (row,) = json.loads((tmp_path / "b.json").read_text())["rows"]
     print(row["bound"], row["prediction_error"])
