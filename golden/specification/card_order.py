@@ -17,6 +17,7 @@ CARD_NAMES = {PROCESSING_ELEMENT: "processing element", MEMORY_UNIT: "memory uni
 #: Cards that end a node, which keeps a picture of its own, and merge its picture with the others'.
 MERGE_CARDS = (CHAIN_MERGE, TREE_MERGE)
 MAXIMUM_CARDS = 4096
+MAXIMUM_NODES = 64
 
 _LETTERS = "".join(CARD_NAMES)
 _REPEATED = re.compile(rf"(?:(\d+)[Xx*×])?(?:\(([{_LETTERS}]*)\)|([{_LETTERS}]))")
@@ -72,7 +73,8 @@ def node_cards(cards: str) -> list[str]:
 
 
 def check_nodes(cards: str) -> None:
-    """Raise ``InputError`` unless all merge cards are of one kind, and the last card is one."""
+    """Raise ``InputError`` unless all merge cards are of one kind, the last card is one, and they
+    are not too many."""
     merge = merge_card(cards)
     if merge is None:
         return
@@ -83,6 +85,10 @@ def check_nodes(cards: str) -> None:
     if cards[-1] != merge:
         raise InputError(f"cards: {cards!r}: the last node is not ended; add a {merge} "
                          f"({CARD_NAMES[merge]}) at the right end")
+    nodes = cards.count(merge)
+    if nodes > MAXIMUM_NODES:
+        raise InputError(f"cards: {nodes} nodes, at most {MAXIMUM_NODES}; end fewer of them, with "
+                         "more processing elements in each")
 
 
 def check_cards(cards: str) -> None:

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from .card_order import (
     CHAIN_MERGE,
+    MAXIMUM_NODES,
     MEMORY_UNIT,
     PROCESSING_ELEMENT,
     TREE_MERGE,
@@ -26,17 +27,15 @@ from .fixed_point import (
     on_screen_fraction_bits,
     stays_in_range,
 )
-from .interlace import Interlace, interlace_for
+from .interlace import MAXIMUM_BLOCK, Interlace, check_squares, interlace_for
 from .ranges import CHANNEL_BITS, FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .shading import Shading
 from .video_timing import VideoTiming, video_timing
 
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
-MAXIMUM_BLOCK = 32
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
-MAXIMUM_NODES = 64
 MAXIMUM_ORDER_BITS = 16  # 65,536 rounds of a packet for each node
 
 #: Triangles in a packet, or one packet for each node.
@@ -182,7 +181,7 @@ class MachineConfiguration:
         if not self.allow_orphans:
             check_cards(self.cards)
         self._check_nodes()
-        self._check_block()
+        check_squares(self.block, self._shares, skew=self.skew, orphans=self.allow_orphans)
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
                              square_bits=self.square_bits, share_bits=self.share_bits,
@@ -214,9 +213,6 @@ class MachineConfiguration:
             raise InputError(f"{error}, nor contiguous") from None
 
     def _check_nodes(self) -> None:
-        if self.nodes > MAXIMUM_NODES:
-            raise InputError(f"cards: {self.nodes} nodes, at most {MAXIMUM_NODES}; end fewer of "
-                             "them, with more processing elements in each")
         if self.maximum_nodes == 0:
             object.__setattr__(self, "maximum_nodes", self.nodes)
         if not self.nodes <= self.maximum_nodes:
@@ -228,26 +224,6 @@ class MachineConfiguration:
                     raise InputError(f"{name}: {getattr(self, name)} is for cages of nodes, and "
                                      f"{self.cards} has no merge card; end its nodes with one, as "
                                      "in 2x(PMMC), or leave it out")
-
-    def _check_block(self) -> None:
-        if self.block & (self.block - 1):
-            raise InputError(f"block: must be a power of two, such as 1, 4 or {MAXIMUM_BLOCK}, not "
-                             f"{self.block}")
-        if self.block == 1:
-            return
-        if self.skew:
-            raise InputError(f"skew: in squares of {self.block}x{self.block} pixels units "
-                             "alternate along the rows already; leave it out, or interlace pixel "
-                             "by pixel (block 1)")
-        squares = f"block: squares of {self.block}x{self.block} pixels"
-        shares = self._shares
-        if len(shares) > 1 and not self.allow_orphans:
-            raise InputError(f"{squares} want as many memory units behind each processing element, "
-                             f"not {' and '.join(map(str, sorted(shares)))}; change the cards, or "
-                             "interlace pixel by pixel (1)")
-        if self.share_bits > 2 * self.square_bits:
-            raise InputError(f"{squares} do not spread over {1 << self.share_bits} memory units; "
-                             f"make them larger, or interlace pixel by pixel (1)")
 
     def _widest(self) -> dict[str, int]:
         """The widths at which every triangle of the guard band fits."""

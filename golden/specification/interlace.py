@@ -22,11 +22,16 @@ and y that name the unit are left out.
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .errors import InputError
+
+MAXIMUM_BLOCK = 32
 
 Coordinate = TypeVar("Coordinate", int, NDArray[np.int64])
 
@@ -217,3 +222,25 @@ def interlace_for(width: int, height: int, *, words: int, units: int, square_bit
             y_shift += 1
         else:
             x_shift += 1
+
+
+def check_squares(block: int, shares: Set[int], *, skew: bool, orphans: bool) -> None:
+    """Raise ``InputError`` unless squares of ``block`` pixels a side spread over processing
+    elements with so many memory units each; ``orphans``: boards may have been pulled out."""
+    if block & (block - 1):
+        raise InputError(f"block: must be a power of two, such as 1, 4 or {MAXIMUM_BLOCK}, not "
+                         f"{block}")
+    if block == 1:
+        return
+    if skew:
+        raise InputError(f"skew: in squares of {block}x{block} pixels units alternate along the "
+                         "rows already; leave it out, or interlace pixel by pixel (block 1)")
+    squares = f"block: squares of {block}x{block} pixels"
+    if len(shares) > 1 and not orphans:
+        raise InputError(f"{squares} want as many memory units behind each processing element, not "
+                         f"{' and '.join(map(str, sorted(shares)))}; change the cards, or "
+                         "interlace pixel by pixel (1)")
+    share_bits = max({1, *shares}).bit_length() - 1
+    if 1 << share_bits > block * block:
+        raise InputError(f"{squares} do not spread over {1 << share_bits} memory units; make them "
+                         "larger, or interlace pixel by pixel (1)")
