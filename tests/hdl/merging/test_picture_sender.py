@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from amaranth.hdl import Fragment
 from hdl_bench.bench import Agent, rejects, simulate
 from hdl_bench.streams import Sink, no_pause, pauses
 
@@ -130,6 +131,10 @@ def test_a_pixel_a_clock(addresses):
     if len(addresses) == 200:
         assert sink.clocks[-1] - sink.clocks[0] == 199
     assert unit.sent == len(addresses) - len(stale)
+
+
+def test_the_least_sizes():
+    Fragment.get(PictureSender(words=1, depth_bits=1), None)
 
 
 @pytest.mark.parametrize(("name", "wrong"), [("words", 0), ("depth_bits", 0)])

@@ -4,7 +4,7 @@ import random
 from itertools import pairwise
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import Fragment, Module
 from amaranth.lib import wiring
 from hdl_bench.bench import Agent, Drive, rejects, simulate
 from hdl_bench.streams import Sink, Source, no_pause, pauses
@@ -47,29 +47,42 @@ class Words(Source):
         return self.begun is None or super().finished
 
 
-class Step(Agent):
-    """One step: starts it, and waits until nobody is busy; ``clocks`` later."""
+class Steps(Agent):
+    """All steps, each some clocks after nobody is busy any more.
 
-    START = 2
+    Of each step: in which clock it ``started``, which nodes were ``busy`` in the next one, and the
+    ``clocks`` until none was.
+    """
 
-    def __init__(self, links, step):
-        self.links, self.step = links, step
-        self.clock = 0
-        self.finished = False
+    def __init__(self, links):
+        self.links = links
+        self.steps = max(1, (len(links) - 1).bit_length())
+        self.clock = self.wait = 0
+        self.started, self.busy, self.clocks = [], [], []
+
+    @property
+    def finished(self):
+        return len(self.clocks) == self.steps
 
     def drive(self, ctx):
+        going = len(self.started) > len(self.clocks)
+        begins = not going and not self.finished and self.wait == 2
+        if begins:
+            self.started.append(self.clock)
+        self.wait = 0 if going or begins else self.wait + 1
         for link in self.links:
-            ctx.set(link.lines.step, self.step)
-            ctx.set(link.lines.start, self.clock == self.START)
+            ctx.set(link.lines.step, max(0, len(self.started) - 1))
+            ctx.set(link.lines.start, begins)
 
     def sample(self, ctx):
         busy = [ctx.get(link.lines.busy) for link in self.links]
-        assert not any(busy) or self.clock > self.START
-        if self.clock == self.START + 1:
-            self.busy = busy
-        if self.clock > self.START + 1 and not any(busy) and not self.finished:
-            self.finished = True
-            self.clocks = self.clock - self.START
+        if len(self.started) == len(self.clocks):
+            assert not any(busy)
+        elif self.clock > self.started[-1]:
+            if len(self.busy) < len(self.started):
+                self.busy.append(busy)
+            if not any(busy):
+                self.clocks.append(self.clock - self.started[-1])
         self.clock += 1
 
 
@@ -78,29 +91,31 @@ def words(pixels):
             {"pixel": dict.fromkeys(("unit", "address", "depth", "color"), 0), "last": 1}]
 
 
-def run(nodes, step, lists, pause=lambda name: no_pause):
-    """Everything each node receives, the sinks, and the clocks from ``start`` to the end."""
+def run(nodes, lists, pause=lambda name: no_pause):
+    """All steps, and what each node receives in them; the sinks, and the steps."""
     m, links = row_of(nodes)
     sources = [Words(link, words(pixels), pause(f"from {number}"))
                for number, (link, pixels) in enumerate(zip(links, lists, strict=True))]
     sinks = [Sink(link.received, 0, pause(f"to {number}")) for number, link in enumerate(links)]
-    agent = Step(links, step)
+    steps = Steps(links)
 
     def ends(ctx, clock):
         """Nobody takes what the leftmost one passes on, and nothing comes from the right."""
         assert not ctx.get(links[0].left.valid)
         ctx.set(links[0].left.ready, clock % 2)
 
-    simulate(m, agent, *sources, *sinks, Drive(ends), after=3)
-    pairs = [(sender, receiver) for at, sender, receiver in tree_pairs(nodes) if at == step]
-    assert agent.busy == [number in [receiver for _, receiver in pairs] for number in range(nodes)]
+    simulate(m, steps, *sources, *sinks, Drive(ends), after=3)
+    pairs = list(tree_pairs(nodes))
+    for step, busy in enumerate(steps.busy):
+        receivers = [receiver for at, _, receiver in pairs if at == step]
+        assert busy == [number in receivers for number in range(nodes)]
     expected = [[] for _ in range(nodes)]
-    for sender, receiver in pairs:
-        expected[receiver] = lists[sender]
+    for _, sender, receiver in pairs:
+        expected[receiver] += lists[sender]
     for sink, pixels in zip(sinks, expected, strict=True):
         assert [{name: getattr(item, name) for name in ("unit", "address", "depth", "color")}
                 for item in sink.items] == pixels
-    return sinks, agent.clocks, pairs
+    return sinks, steps
 
 
 def random_lists(pick, nodes, count):
@@ -112,23 +127,28 @@ def random_lists(pick, nodes, count):
 @pytest.mark.parametrize("nodes", [1, 2, 3, 5, 8, 13])
 def test_every_step_with_pauses(nodes):
     pick = random.Random(f"tree {nodes}")
-    for step in range(max(1, (nodes - 1).bit_length())):
+    for seed in range(3):
         lists = random_lists(pick, nodes, lambda: pick.choice((0, 1, 2, 30)))
-        run(nodes, step, lists, lambda name, step=step: pauses(f"{nodes} {step} {name}"))
+        run(nodes, lists, lambda name, seed=seed: pauses(f"{nodes} {seed} {name}"))
 
 
+@pytest.mark.parametrize("count", [0, 1, 20])
 @pytest.mark.parametrize("nodes", [2, 5, 32])
-def test_a_word_a_clock_and_a_clock_a_node(nodes):
-    pick = random.Random(f"quick {nodes}")
-    for step in range((nodes - 1).bit_length()):
-        sinks, clocks, pairs = run(nodes, step, random_lists(pick, nodes, lambda: 20))
-        for sender, receiver in pairs:
-            arrived = sinks[receiver].clocks
-            # The sender offers its first word in the clock after start.
-            assert arrived[0] == Step.START + 1 + (sender - receiver + 1) * TreeLink.latency
-            assert arrived[-1] - arrived[0] == 19
-        # One for the last word, which is no pixel, and one until nobody is busy.
-        assert clocks == 1 + ((1 << step) + 1) * TreeLink.latency + 20 + 1
+def test_a_word_a_clock_and_a_clock_a_node(nodes, count):
+    """From the clock after the start, in which each sender offers its first word."""
+    sinks, steps = run(nodes, random_lists(random.Random("quick"), nodes, lambda: count))
+    clocks = [list(sink.clocks) for sink in sinks]
+    for step, sender, receiver in tree_pairs(nodes):
+        arrived = [clocks[receiver].pop(0) for _ in range(count)]
+        first = steps.started[step] + 1 + (sender - receiver + 1) * TreeLink.latency
+        assert arrived == list(range(first, first + count))
+    # One for the last word, which is no pixel, and one until nobody is busy.
+    assert steps.clocks == [1 + (2**step + 1) * TreeLink.latency + count + 1
+                            for step in range(steps.steps)]
+
+
+def test_the_least_sizes():
+    Fragment.get(TreeLink(id_bits=1, address_bits=1, depth_bits=1, node_bits=1), None)
 
 
 @pytest.mark.parametrize("name", ["depth_bits", "id_bits", "address_bits", "node_bits"])

@@ -7,6 +7,7 @@ import pytest
 from frames import PIXEL, SCREEN, check, joined, random_list, triangles
 from wide_machines import wide_machine
 
+from cardcage.golden.cycles.frame_clocks import most_frame_clocks
 from cardcage.golden.merging.node_picture import node_pictures
 from cardcage.golden.merging.traffic import Traffic
 from cardcage.golden.merging.tree import merge_tree
@@ -18,7 +19,6 @@ from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.conversation import responses_owed
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
-from cardcage.testbenches.frames.simulation import simulate
 
 
 def traffic_of(configuration, display_list):
@@ -44,6 +44,11 @@ def same_depths(count, seed):
                      source.integers(0, 256, (count, 1, 3)).repeat(3, axis=1))
 
 
+def machine(display_list, cards, **options):
+    """Whose scans are short."""
+    return wide_machine(display_list, cards=cards, clocks_per_pixel=2, **options)
+
+
 CAGES = {
     "two of one unit, in turn": ("2x(PMT)", {"packet": 1}),
     "three of two, a run each": ("3x(PMMT)", {"packet": "contiguous"}),
@@ -56,20 +61,39 @@ CAGES = {
 }
 
 
-@pytest.mark.parametrize("cage", CAGES)
-@pytest.mark.parametrize("seed", range(2))
-def test_whole_frames(cage, seed):
-    """From random memory, the second with a host that stalls; ties between nodes in half of it."""
+@pytest.mark.parametrize(("seed", "cage"), list(enumerate(CAGES)))
+def test_whole_frames(seed, cage):
+    """From random memory, with a host that stalls; ties between nodes in half of it."""
     cards, options = CAGES[cage]
-    listed = joined(random_list((seed, cage.encode()[0]), 24), same_depths(6, seed))
-    configuration = wide_machine(listed, cards=cards, clocks_per_pixel=2, **options)
-    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=seed,
-                          stall_seed=seed or None)
-    check(configuration, listed, simulation)
-    traffic = traffic_of(configuration, listed)
-    assert list(simulation.sent) == sent_by_node(traffic)
+    listed = joined(random_list(seed, 24), same_depths(6, seed))
+    configuration = machine(listed, cards, **options)
+    [(simulation, traffic)] = frames(configuration, [listed], seed=seed)
     assert bool(traffic.pixels) == (configuration.nodes > 1)
     assert simulation.merge_cycles > simulation.draw_cycles
+
+
+def frames(configuration, lists, *, abandoned=(), seed=1, stall=True):
+    """All lists one after another through one machine, each checked; those ``abandoned`` are not
+    ended.  The ``Simulation`` and the golden traffic of each of the others."""
+    words = []
+    for number, listed in enumerate(lists):
+        words += frame_commands(configuration, listed)
+        if number in abandoned:
+            words.pop()
+        else:
+            words += [commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+    job = Job(configuration, commands=words, memory_seed=seed, stall_seed=seed if stall else None,
+              responses=responses_owed(organisation_of(configuration), words),
+              maximum_cycles=most_frame_clocks(configuration, len(words)))
+    answers = Answers(configuration, PysimEngine().run(job))
+    finished = [listed for number, listed in enumerate(lists) if number not in abandoned]
+    assert answers.frames == len(finished)
+    for number, listed in enumerate(finished):
+        simulation = answers.frame(number, reading=number)
+        check(configuration, listed, simulation)
+        traffic = traffic_of(configuration, listed)
+        assert list(simulation.sent) == sent_by_node(traffic)
+        yield simulation, traffic
 
 
 @pytest.mark.parametrize("ports", [1, 2])
@@ -79,27 +103,10 @@ def test_many_frames(ports):
              lambda n: same_depths(5, n),
              lambda n: triangles([PIXEL] * 3, [[n] * 3] * 3, [[[n, 1, k]] * 3 for k in range(3)]))
     lists = [kinds[number % 4](number) for number in range(14)]
-    abandoned = (2, 4, 9)
-    configuration = max((wide_machine(
-        listed, cards="3x(PMMT)", clocks_per_pixel=2, tag_bits=2, memory_ports=ports,
-        shading="gouraud") for listed in lists), key=lambda machine: machine.fraction_bits)
-    words = []
-    for number, listed in enumerate(lists):
-        words += frame_commands(configuration, listed)
-        if number in abandoned:
-            words.pop()
-        else:
-            words += [commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
-    job = Job(configuration, commands=words, memory_seed=ports, stall_seed=ports,
-              responses=responses_owed(organisation_of(configuration), words),
-              maximum_cycles=len(lists) * 60 * configuration.cycles_per_scan)
-    answers = Answers(configuration, PysimEngine().run(job))
-    finished = [listed for number, listed in enumerate(lists) if number not in abandoned]
-    assert answers.frames == len(finished)
-    for number, listed in enumerate(finished):
-        simulation = answers.frame(number, reading=number)
-        check(configuration, listed, simulation)
-        assert list(simulation.sent) == sent_by_node(traffic_of(configuration, listed))
+    configuration = max((machine(listed, "3x(PMMT)", tag_bits=2, memory_ports=ports,
+                                 shading="gouraud") for listed in lists),
+                        key=lambda wide: wide.fraction_bits)
+    assert len(list(frames(configuration, lists, abandoned=(2, 4, 9)))) == 11
 
 
 def bar(traffic: Traffic, words: int) -> float:
@@ -108,33 +115,28 @@ def bar(traffic: Traffic, words: int) -> float:
     return 1.05 * sum(steps) + sum(64 + 4 * 2**step + words / 4096 for step in range(len(steps)))
 
 
-@pytest.mark.parametrize("drawn", ["everything", "a pixel", "nothing"])
-def test_a_pixel_a_clock_and_little_else(drawn, record_property):
+def test_a_pixel_a_clock_and_little_else(record_property):
     """The longest list of each step, and a few clocks for the step and for each unit."""
-    listed = {"everything": same_depths(8, 1), "nothing": triangles([], [], []),
-              "a pixel": triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4)}[drawn]
-    listed = replace(listed, width=32, height=32, position=listed.position * 4)
-    configuration = wide_machine(listed, cards="4x(PMMMMT)", clocks_per_pixel=2, memory_ports=2,
-                                 packet=1)
-    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=3)
-    check(configuration, listed, simulation)
-    traffic = traffic_of(configuration, listed)
-    clocks = simulation.merge_cycles - simulation.draw_cycles
-    assert traffic.steps == {"everything": [1024] * 2, "nothing": [0] * 2}.get(
-        drawn, traffic.steps)
-    assert clocks <= bar(traffic, configuration.words)
-    overhead = clocks - sum(traffic.steps)
-    assert overhead <= 2 * 30
-    record_property("measured", f"4x(PMMMMT), {drawn} drawn: {clocks} clocks to merge, {overhead} "
-                                f"more than the pixels sent")
+    lists = [same_depths(8, 1), triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4),
+             triangles([], [], [])]
+    lists = [replace(listed, width=16, height=16, position=2 * listed.position)
+             for listed in lists]
+    configuration = machine(lists[0], "4x(PMMMMT)", memory_ports=2)
+    merged = list(frames(configuration, lists, stall=False))
+    assert [traffic.steps for _, traffic in merged][::2] == [[256, 256], [0, 0]]
+    for name, (simulation, traffic) in zip(("all", "some", "no"), merged, strict=True):
+        clocks = simulation.merge_cycles - simulation.draw_cycles
+        assert clocks <= bar(traffic, configuration.words)
+        overhead = clocks - sum(traffic.steps)
+        assert overhead <= 2 * 25
+        record_property("measured", f"4x(PMMMMT), {name} pixels drawn: {clocks} clocks to merge, "
+                                    f"{overhead} more than pixels sent in turn")
 
 
 def test_nodes_send_nothing_more_than_was_drawn():
-    """A machine of whose nodes only the last draws."""
+    """The first two nodes draw a pixel each, the last one the whole screen."""
     listed = triangles([PIXEL, PIXEL, SCREEN], [[9] * 3, [8] * 3, [4] * 3],
                        [[[7, 8, 9]] * 3] * 3)
-    configuration = wide_machine(listed, cards="3x(PMT)", clocks_per_pixel=2, packet="contiguous")
-    simulation = simulate(configuration, listed, PysimEngine(), memory_seed=3)
-    check(configuration, listed, simulation)
+    [(simulation, _)] = frames(machine(listed, "3x(PMT)", packet="contiguous"), [listed])
     assert list(simulation.sent) == [0, 1, 64]
     assert [work.fragments for work in simulation.work] == [1, 1, 64]
