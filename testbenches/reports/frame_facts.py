@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...golden.merging.cage import merge_cage
 from ...golden.organisations.machine_facts import machine_facts
+from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
@@ -38,15 +40,17 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         "cycles": {
             "boot": simulation.boot_cycles,
             "draw": simulation.draw_cycles,
+            "merged": simulation.merge_cycles,
             "total": simulation.cycles,
         },
         "efficiency": rendering.efficiency,
         "repeated_scans": simulation.repeated_scans,
         "per_pe": [
-            {"first_unit": work.first_unit, "units": work.units, "fragments": work.fragments,
-             "busy": work.busy_cycles}
+            {"node": work.node, "first_unit": work.first_unit, "units": work.units,
+             "fragments": work.fragments, "busy": work.busy_cycles}
             for work in simulation.work
         ],
+        "merging": merging_facts(rendering),
         "activity": _activity(simulation.activity),
         "engine": simulation.engine,
         "simulated_cycles_per_second": rendering.cycles_per_second,
@@ -70,6 +74,32 @@ def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
                    for counts in record.by_element.tolist()],
         "bucket_clocks": record.bucket_clocks,
         "timeline": {kind.name: timeline[:, kind.activity].tolist() for kind in ACTIVITY_KINDS},
+    }
+
+
+def merging_facts(rendering: Rendering) -> dict[str, Any] | None:
+    """What the nodes sent to merge their pictures, by the machine's counters and by the golden
+    model; None where there is one node.
+
+    A chain's last card sends to the pins, which is no link.
+    """
+    configuration, simulation = rendering.configuration, rendering.simulation
+    if not organisation_of(configuration).merges:
+        return None
+    _, traffic = merge_cage(configuration, rendering.scene.display_list)
+    golden = [0] * configuration.nodes
+    for send in traffic.sends:
+        golden[send.sender] += send.pixels
+    links = {send.sender for send in traffic.sends}
+    counted = [pixels if node in links else 0 for node, pixels in enumerate(simulation.sent)]
+    return {
+        "pixels": counted,
+        "golden_pixels": golden,
+        "equal": counted == golden,
+        "pixel_bits": traffic.pixel_bits,
+        "total_bits": sum(counted) * traffic.pixel_bits,
+        "busiest_link_pixels": traffic.busiest_piece,
+        "steps": traffic.steps,
     }
 
 

@@ -29,16 +29,23 @@ REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "differen
 
 @dataclass(frozen=True)
 class CardGroup:
-    """Neighbouring cards in the drawing of the cage: a processing element and its units.
+    """Neighbouring cards in the drawing of the cage: a processing element and its units, or a
+    merge card.
 
-    ``element`` is None for units that belong to nobody.
+    ``element``  None for units that belong to nobody
+    ``merge``    the letter of a merge card, which is a group by itself
+    ``node``     the node that it ends
     """
 
     element: int | None
     units: range
+    merge: str | None = None
+    node: int = 0
 
     @property
     def caption(self) -> str:
+        if self.merge is not None:
+            return f"ends node {self.node}"
         if self.element is None:
             return "owned by nobody"
         if not self.units:
@@ -92,11 +99,19 @@ def _activity_charts(rendering: Rendering) -> list[str]:
 
 def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
     """The cage from left to right."""
-    domains = organisation_of(configuration).domains
-    orphans = domains[0].first
-    groups = [CardGroup(None, range(orphans))] if orphans else []
-    return groups + [CardGroup(number, range(domain.first, domain.first + domain.units))
-                     for number, domain in enumerate(domains)]
+    organisation = organisation_of(configuration)
+    elements = list(enumerate(organisation.domains))
+    groups = []
+    for node, units in enumerate(organisation.node_units):
+        own = [(number, domain) for number, domain in elements if domain.node == node]
+        orphans = own[0][1].first if own else units
+        if orphans:
+            groups.append(CardGroup(None, range(orphans)))
+        groups += [CardGroup(number, range(domain.first, domain.first + domain.units))
+                   for number, domain in own]
+        if organisation.merges:
+            groups.append(CardGroup(None, range(0), configuration.merge, node))
+    return groups
 
 
 def _is_exact(rendering: Rendering) -> bool:

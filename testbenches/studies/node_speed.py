@@ -108,16 +108,21 @@ def main(merge: str, cases: tuple[str, ...], as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps([asdict(row) for row in found], indent=2))
         return
-    click.echo(TextTable(
+    click.echo(table(merge, found).text())
+
+
+def table(merge: str, found: list[Row]) -> TextTable:
+    return TextTable(
         f"{NODES} nodes, merged by {merge}",
         ("case", "lists", "packet", "draw", "of bound", "model", "fragments/clock",
          "clocks/triangle", "merge", "of bar", "model", "sent", "equal"),
-        tuple((row.case, "retained" if row.retained else "immediate", str(row.packet), f"{row.draw:,}",
-          f"{row.draw / row.bound:.3f}", f"{row.model / row.draw:.3f}",
-          f"{row.fragments_per_clock:.2f}", f"{row.clocks_per_triangle:.3f}", f"{row.merge:,}",
-          f"{row.merge / row.merge_bound:.2f}" if row.merge_bound else "-",
-          f"{row.merge_model / row.merge:.3f}" if row.merge else "-", f"{row.sent:,}",
-          "yes" if row.equal else "NO") for row in found)).text())
+        tuple((
+            row.case, "retained" if row.retained else "immediate", str(row.packet),
+            f"{row.draw:,}", f"{row.draw / row.bound:.3f}", f"{row.model / row.draw:.3f}",
+            f"{row.fragments_per_clock:.2f}", f"{row.clocks_per_triangle:.3f}", f"{row.merge:,}",
+            f"{row.merge / row.merge_bound:.2f}" if row.merge_bound else "-",
+            f"{row.merge_model / row.merge:.3f}" if row.merge else "-", f"{row.sent:,}",
+            "yes" if row.equal else "NO") for row in found))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,9 @@ def render_summary(rendering: Rendering) -> str:
               f"triangles, {rendering.fragments:,} fragments at "
               f"{width}x{height}"),
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
-        _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw; "
+        _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw"
+              + ("" if simulation.merge_cycles is None else
+                 f", {simulation.merge_cycles - simulation.draw_cycles:,} to merge") + "; "
               f"{simulation.cycles:,} simulated by {simulation.engine} in "
               f"{simulation.seconds:.1f} s"
               + (f", after {simulation.build_seconds:.0f} s of compiling the model"
