@@ -14,6 +14,15 @@ from .traffic import Traffic
 from .tree import merge_tree
 
 
+def sent_pixel_bits(configuration: MachineConfiguration) -> int:
+    """Bits of a pixel that a merge card sends: depth, order and colour; of a tree its unit and
+    address as well."""
+    bits = configuration.rank_bits + COLOR_BITS
+    if organisation_of(configuration).merges_after_drawing:
+        bits += configuration.id_bits + configuration.address_bits
+    return bits
+
+
 def merge_cage(configuration: MachineConfiguration,
                display_list: DisplayList) -> tuple[NodePicture, Traffic]:
     """The merged picture, at the cage's resolution, and what its merge cards send for it.
@@ -26,12 +35,10 @@ def merge_cage(configuration: MachineConfiguration,
         display_list, organisation.shares(display_list.triangles),
         order_bits=configuration.order_bits, shading=configuration.shading,
         **organisation.resolution.shifts)
-    bits = configuration.rank_bits + COLOR_BITS
     if organisation.merges_after_drawing:
         picture, traffic = merge_tree(pictures)
-        return picture, replace(
-            traffic, pixel_bits=bits + configuration.id_bits + configuration.address_bits)
+        return picture, replace(traffic, pixel_bits=sent_pixel_bits(configuration))
     picture, traffic = merge_chain(pictures)
     scanned = configuration.width * configuration.height
-    return picture, replace(traffic, pixel_bits=bits, sends=[
+    return picture, replace(traffic, pixel_bits=sent_pixel_bits(configuration), sends=[
         send._replace(pixels=scanned) for send in traffic.sends])

@@ -21,13 +21,14 @@ from .progress import busy
               show_default=True, help="The machine, as wide as the scene needs.")
 @click.option("--scene", default="teapot:tessellation=8", show_default=True, help="What it draws.")
 @click.option("--cards", metavar="CARDS", help="Instead of the preset's.")
+@click.option("--retain", is_flag=True, help="Nodes keep their triangles in list memories.")
 @click.option("--runs", type=click.IntRange(1), default=5, show_default=True,
               help="Of which the median counts.")
 @click.option("--pysim-cycles", type=click.IntRange(1), default=2048, show_default=True,
               help="Cycles of the slow engine that are waited for.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: one object.")
-def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_cycles: int,
-                    as_json: bool) -> None:
+def engines_command(name: str, scene: str, cards: str | None, retain: bool, runs: int,
+                    pysim_cycles: int, as_json: bool) -> None:
     """Measure how fast the simulators are on this computer.
 
     Simulated cycles a second of one frame: through the Verilator engine, in a bare loop that only
@@ -37,13 +38,14 @@ def engines_command(name: str, scene: str, cards: str | None, runs: int, pysim_c
     Examples:
       cardcage engines
       cardcage engines --preset small --scene teapot
+      cardcage engines --cards '16x(PMMC)' --retain --scene teapot:tessellation=29
     """
     from ..speed.engine_speed import measure_engines  # loads Amaranth
 
     size: dict[str, Any] = {axis: PRESETS[name][axis] for axis in ("width", "height")}
     display_list = make_display_list(scene, **size).display_list
     asked = PRESETS[name] | {"fraction_bits": None} | ({"cards": cards} if cards else {})
-    machine = plan(display_list, **asked).configuration
+    machine = plan(display_list, retain=retain, **asked).configuration
     try:
         with busy("measuring engines"):
             speed = measure_engines(machine, display_list, runs=runs, pysim_cycles=pysim_cycles)

@@ -9,7 +9,9 @@ from typing import Any
 from amaranth.hdl import Fragment
 from amaranth.lib import wiring
 
+from ...golden.merging.cage import sent_pixel_bits
 from ...golden.organisations.machine_facts import machine_facts
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import CHANNEL_BITS
@@ -44,7 +46,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
     """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
 
     Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
-    ``ports``, ``number_formats``, ``timing``, ``commands``, ``memories``.
+    ``ports``, ``number_formats``, ``timing``, ``merging``, ``commands``, ``memories``.
     """
     top = name or "machine"
     modules = _modules(verilog)
@@ -60,6 +62,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
         "number_formats": _number_formats(configuration),
         "timing": {part: _inspected(COMPONENTS[part](configuration), stated_timing)
                    for part in timed},
+        "merging": _merging(configuration),
         "commands": _command_words(configuration),
         "memories": _memories(verilog, modules, top),
     }
@@ -109,6 +112,26 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
         *([] if not c.order_bits else
           [number("round", c.order_bits, "round in which a node drew a pixel, beside its depth")]),
     ]
+
+
+def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
+    """How one picture comes of those of the nodes; None where there is one node."""
+    organisation = organisation_of(configuration)
+    if not organisation.merges:
+        return None
+    return {
+        "organisation": organisation.name,
+        "nodes": organisation.nodes,
+        "memory_units_of_each": list(organisation.node_units),
+        "nearer": "least depth, of equal depths the least round, of equal rounds the lowest node",
+        "order_bits": configuration.order_bits,
+        "packet": configuration.packet,
+        "list_words": configuration.list_words,
+        "pixel_bits": sent_pixel_bits(configuration),
+        "steps": (organisation.nodes - 1).bit_length() if organisation.merges_after_drawing else 0,
+        "counters": "READ_COUNTERS: after FRAGMENTS and BUSY of a node's processing elements SENT, "
+                    "the pixels that its merge card sent for the picture",
+    }
 
 
 def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:

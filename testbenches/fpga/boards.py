@@ -9,6 +9,7 @@ from typing import Any
 from amaranth.lib import wiring
 
 from ...golden.planning.on_screen_widths import on_screen_widths
+from ...golden.specification.card_order import CHAIN_MERGE, TREE_MERGE
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.memory_unit.memory_unit import MemoryUnit
 from ..machine_options import SETUPS
@@ -40,6 +41,7 @@ class Board:
     ``build``    as of ``Part``
     ``changes``  fields of the configuration in which it differs from the rest
     ``mapping``  as of ``Part``
+    ``merge``    the card that ends nodes of the cards, which there are two of; none where empty
     """
 
     title: str
@@ -47,14 +49,17 @@ class Board:
     build: Callable[[MachineConfiguration], wiring.Component] | None = None
     changes: Mapping[str, Any] = field(default_factory=dict)
     mapping: LogicMapping = "area"
+    merge: str = ""
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """The board in a machine that is exact for any triangle on the screen.  Raises
         ``InputError``."""
         machine: dict[str, Any] = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS,
                                    "shading": "flat", "memory_ports": 2} | dict(self.changes)
+        if self.merge:
+            machine["packet"] = "contiguous"  # no order beside the depths
         configuration = MachineConfiguration(
-            cards=cards, width=width, height=height, **machine,
+            cards=f"2x({cards}{self.merge})" if self.merge else cards, width=width, height=height, **machine,
             **on_screen_widths(width, height, SUB_BITS))
         return Part(configuration, self.name, self.build, self.mapping)
 
@@ -67,6 +72,12 @@ BOARDS = {
                             {"shading": "gouraud"}),
     "unit-1-port": Board("memory unit, 1 port", "memory_unit", memory_unit, {"memory_ports": 1}),
     "unit-2-ports": Board("memory unit, 2 ports", "memory_unit", memory_unit),
+    "unit-of-chain": Board("memory unit, 2 ports, two depths", "memory_unit", memory_unit,
+                           merge=CHAIN_MERGE),
+    "unit-of-tree": Board("memory unit, 2 ports, sends", "memory_unit", memory_unit,
+                          merge=TREE_MERGE),
+    "chain-merge": Board("chain merge", "chain_merge", merge=CHAIN_MERGE),
+    "tree-merge": Board("tree merge", "tree_merge", merge=TREE_MERGE),
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
