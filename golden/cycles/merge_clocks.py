@@ -3,31 +3,43 @@
 Step by step, all pairs at the same time: a step takes as long as its longest send, as the way from
 the sender to the receiver, and as what goes before the first pixel and after the last one::
 
-    step = STEP_CLOCKS + pixels of the longest send · clocks of a pixel + nodes passed · HOP_CLOCKS
+    step = STEP_CLOCKS + clocks of the longest send + nodes on the way · HOP_CLOCKS
+
+A pixel takes a clock.  Where units have one port it is read and, if what comes is nearer, written,
+and since pixels come unit by unit that is all at one port, which the scan has now and then.
 
 A chain merges while it is scanned, which takes no clock of a frame.
 """
 
 from __future__ import annotations
 
-from ..merging.traffic import Traffic
+from ..merging.traffic import Send, Traffic
 from ..specification.configuration import MachineConfiguration
+from .one_port_lanes import scan_share
 
-#: From the start of a step to that of the next one, if its senders are neighbours of the receivers
-#: and have drawn nothing: to find the first word that was drawn, to read it, and to see that all
-#: is written.
-STEP_CLOCKS = 24
+#: From the end of drawing to the first step.
+MERGE_CLOCKS = 1
+
+#: From the start of a step to the next one, were the receiver the sender's own: to find the first
+#: word that was drawn, to read it, and to see that all is written.  A node that has drawn nothing
+#: is some clocks quicker.
+STEP_CLOCKS = 18
 
 #: From a node to the next one on the way to the receiver.
 HOP_CLOCKS = 1
 
-#: A pixel that is received, by the ports of a memory unit: one port has a read and most often a
-#: write, since pixels come unit by unit.
-PIXEL_CLOCKS = {1: 2, 2: 1}
-
 
 def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[int]:
-    """The clocks of each step of a tree's ``traffic``, from the end of drawing on."""
-    pixel_clocks = PIXEL_CLOCKS[configuration.memory_ports]
-    return [STEP_CLOCKS + pixels * pixel_clocks + (HOP_CLOCKS << step)
-            for step, pixels in enumerate(traffic.steps)]
+    """The clocks of each step of a tree's ``traffic``, the first one's from the end of drawing
+    on."""
+    longest = [0.0] * (traffic.nodes - 1).bit_length()
+    for send in traffic.sends:
+        longest[send.step] = max(longest[send.step], _send_clocks(configuration, send))
+    return [STEP_CLOCKS + round(clocks) + (HOP_CLOCKS << step) + (0 if step else MERGE_CLOCKS)
+            for step, clocks in enumerate(longest)]
+
+
+def _send_clocks(configuration: MachineConfiguration, send: Send) -> float:
+    if configuration.memory_ports == 2:
+        return send.pixels
+    return (send.pixels + send.kept) / (1 - scan_share(configuration, send.receiver))

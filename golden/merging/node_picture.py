@@ -38,6 +38,13 @@ class NodePicture:
         return np.asarray(self.picture.winner != NO_PRIMITIVE)
 
 
+def higher_is_nearer(lower: NodePicture, higher: NodePicture) -> NDArray[np.bool_]:
+    """bool (height, width): where the less (depth, order) is that of ``higher``."""
+    one, other = lower.picture, higher.picture
+    return np.asarray((other.depth < one.depth)
+                      | ((other.depth == one.depth) & (higher.order < lower.order)))
+
+
 def nearer(lower: NodePicture, higher: NodePicture) -> NodePicture:
     """Two nodes' pictures as one: in every pixel the less (depth, order), and where these are
     equal that of ``lower``, the nodes with the lower numbers.
@@ -46,7 +53,7 @@ def nearer(lower: NodePicture, higher: NodePicture) -> NodePicture:
     associative: any order of merging neighbours gives the same words.
     """
     one, other = lower.picture, higher.picture
-    takes = (other.depth < one.depth) | ((other.depth == one.depth) & (higher.order < lower.order))
+    takes = higher_is_nearer(lower, higher)
 
     def chosen(mine: NDArray[Any], others: NDArray[Any]) -> NDArray[Any]:
         mask = takes if mine.ndim == takes.ndim else takes[..., None]

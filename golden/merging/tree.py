@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from .node_picture import NodePicture, nearer
+from .node_picture import NodePicture, higher_is_nearer, nearer
 from .traffic import Send, Traffic
 
 
@@ -28,6 +28,8 @@ def merge_tree(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Traffic]:
     kept = list(pictures)
     sends = []
     for step, sender, receiver in tree_pairs(len(pictures)):
-        sends.append(Send(step, sender, receiver, int(np.count_nonzero(kept[sender].drawn))))
+        sends.append(Send(
+            step, sender, receiver, int(np.count_nonzero(kept[sender].drawn)),
+            int(np.count_nonzero(higher_is_nearer(kept[receiver], kept[sender])))))
         kept[receiver] = nearer(kept[receiver], kept[sender])
     return kept[0], Traffic(len(pictures), sends)

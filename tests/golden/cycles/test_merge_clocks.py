@@ -4,7 +4,13 @@ import pytest
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.frame_clocks import most_frame_clocks, predict_frame
-from cardcage.golden.cycles.merge_clocks import HOP_CLOCKS, STEP_CLOCKS, merge_clocks
+from cardcage.golden.cycles.merge_clocks import (
+    HOP_CLOCKS,
+    MERGE_CLOCKS,
+    STEP_CLOCKS,
+    merge_clocks,
+)
+from cardcage.golden.cycles.one_port_lanes import scan_share
 from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.merging.traffic import Send, Traffic
 from cardcage.golden.scene_display_list import make_display_list
@@ -16,13 +22,23 @@ def machine(cards, ports=2):
     return wide_machine(LIST, cards=cards, memory_ports=ports)
 
 
-@pytest.mark.parametrize(("ports", "clocks"), [(1, 2), (2, 1)])
-def test_a_step_waits_for_its_longest_send(ports, clocks):
-    traffic = Traffic(6, [Send(0, 1, 0, 500), Send(0, 3, 2, 700), Send(0, 5, 4, 0),
-                          Send(1, 2, 0, 900), Send(2, 4, 0, 30)])
-    assert merge_clocks(machine("6x(PMMT)", ports), traffic) == [
-        STEP_CLOCKS + clocks * longest + passed * HOP_CLOCKS
-        for longest, passed in ((700, 1), (900, 2), (30, 4))]
+def test_a_step_waits_for_its_longest_send():
+    """With two ports for the one of the most pixels, with one for that of the most accesses, which
+    take longer where the scan reads as well."""
+    traffic = Traffic(6, [Send(0, 1, 0, 500, 400), Send(0, 3, 2, 700, 10), Send(0, 5, 4, 0, 0),
+                          Send(1, 2, 0, 900, 100), Send(2, 4, 0, 30, 30)])
+    assert merge_clocks(machine("6x(PMMT)", 2), traffic) == [
+        STEP_CLOCKS + longest + passed * HOP_CLOCKS + before
+        for longest, passed, before in ((700, 1, MERGE_CLOCKS), (900, 2, 0), (30, 4, 0))]
+    one_port = machine("6x(PMMT)", 1)
+    slower = 1 - scan_share(one_port)
+    assert 900 / slower > 710 and 0.5 < slower < 1
+    assert merge_clocks(one_port, traffic) == [
+        STEP_CLOCKS + round(longest / slower) + passed * HOP_CLOCKS + before
+        for longest, passed, before in ((900, 1, MERGE_CLOCKS), (1000, 2, 0), (60, 4, 0))]
+    # No scan reads node 2.
+    assert merge_clocks(one_port, Traffic(4, traffic.sends[1:2]))[0] == (
+        MERGE_CLOCKS + STEP_CLOCKS + 710 + HOP_CLOCKS)
 
 
 def test_one_node_has_nothing_to_merge():

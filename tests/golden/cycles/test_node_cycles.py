@@ -157,7 +157,7 @@ def test_nodes_hide_only_what_they_drew_themselves(merge):
     if merge == "T":
         bounds[1] *= 1 - scan_share(machine)
     assert lists.port_bound == pytest.approx(max(bounds))
-    # The scan is three clocks further on.
+    # The scan is two clocks further on.
     if merge == "C":
         assert lists.cycles - LIST_LATENCY == pytest.approx(
             max(each.cycles for each in alone), rel=0.02)
