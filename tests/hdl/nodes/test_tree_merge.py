@@ -27,15 +27,16 @@ def values(pixels):
 
 
 class Controller(Agent):
-    """A frame start, one step, and the counters when the card is done with it.
+    """A frame start, one step, and the counters when the card is done with it; then again a frame
+    start, and the counters.
 
-    ``ended(ctx)``: the others have seen the step end.
+    ``ended()``: the others have seen the step end.
     """
 
     def __init__(self, dut, number, step, ended):
         self.dut, self.number, self.step, self.ended = dut, number, step, ended
         self.clock = 0
-        self.asked = self.finished = False
+        self.asked = None
 
     def drive(self, ctx):
         dut = self.dut
@@ -46,15 +47,21 @@ class Controller(Agent):
         ctx.set(dut.own.done, 1)
         ctx.set(dut.tree.step, self.step)
         ctx.set(dut.tree.start, self.clock == 5)
-        self.asks = self.clock > 7 and not self.asked and self.ended() and not ctx.get(
-            dut.tree.busy)
-        ctx.set(dut.broadcast.strobe, self.clock == 1 or self.asks)
-        ctx.set(dut.broadcast.packet.operation,
-                Operation.READ_COUNTERS if self.asks else Operation.FRAME_START)
+        if self.asked is None and self.clock > 7 and self.ended() and not ctx.get(dut.tree.busy):
+            self.asked = self.clock
+        since = -1 if self.asked is None else self.clock - self.asked
+        operation = {0: Operation.READ_COUNTERS, 30: Operation.FRAME_START,
+                     32: Operation.READ_COUNTERS}.get(since)
+        if self.clock == 1:
+            operation = Operation.FRAME_START
+        ctx.set(dut.broadcast.strobe, operation is not None)
+        ctx.set(dut.broadcast.packet.operation, operation or Operation.READ_COUNTERS)
+
+    @property
+    def finished(self):
+        return self.asked is not None
 
     def sample(self, ctx):
-        self.finished |= self.asks
-        self.asked |= self.asks
         self.clock += 1
 
 
@@ -67,7 +74,7 @@ def run(number, step, *, pixels=(), arriving=(), stall=""):
     source = Source(dut.from_right, words(arriving) if arriving else [], pause(f"{stall} right"))
     left, received = (Sink(stream, 0, pause(f"{stall} {name}"))
                       for name, stream in (("left", dut.to_left), ("received", dut.received)))
-    count = Sink(dut.left.response, 1)
+    count = Sink(dut.left.response, 2)
 
     def ended():
         sent = not pixels or (units.finished and left.items and left.items[-1].last)
@@ -75,8 +82,9 @@ def run(number, step, *, pixels=(), arriving=(), stall=""):
 
     agents = [Controller(dut, number, step, ended), source, left, received, count]
     simulate(dut, *agents, *([units] if pixels else []), after=12)
-    [answer] = count.items
-    assert ResponseKind(answer.kind) == ResponseKind.SENT
+    answer, later = count.items
+    assert answer.kind == later.kind == ResponseKind.SENT
+    assert later.value == 0  # of a frame that has only begun
     return left, received, answer.value
 
 
