@@ -57,7 +57,7 @@ class TreeSteps(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         lines = self.lines
-        distance = Signal(self.node_bits + 1, init=1)  # of the nodes that meet
+        distance = Signal(self.node_bits + 1)  # of the nodes that meet
         with m.FSM():
             with m.State("IDLE"):
                 m.d.comb += self.idle.eq(1)

@@ -39,6 +39,6 @@ class TreeLines(wiring.Signature):
             raise ValueError(f"node_bits must be positive, not {node_bits!r}")
         super().__init__({
             "start": Out(1),
-            "step": Out(range(max(2, node_bits))),
+            "step": Out(range(node_bits)),
             "busy": In(1),
         })

@@ -18,6 +18,7 @@ class Cards(Agent):
         self.dut, self.pause = dut, pause
         self.clock = self.busy = self.writing = 0
         self.steps = []
+        self.going = False
 
     def drive(self, ctx):
         ctx.set(self.dut.lines.busy, self.busy > 0)
@@ -28,6 +29,8 @@ class Cards(Agent):
         if self.busy or self.writing:
             assert not ctx.get(lines.start) and not ctx.get(self.dut.done)
             assert ctx.get(lines.step) == self.steps[-1][0]
+        assert ctx.get(self.dut.idle) == (not self.going)
+        self.going = (self.going or ctx.get(self.dut.start)) and not ctx.get(self.dut.done)
         self.busy, self.writing = max(0, self.busy - 1), max(0, self.writing - 1)
         if ctx.get(lines.start):
             self.steps.append((ctx.get(lines.step), self.clock))

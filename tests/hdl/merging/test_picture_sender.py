@@ -131,6 +131,8 @@ def test_a_pixel_a_clock(addresses):
     if len(addresses) == 200:
         assert sink.clocks[-1] - sink.clocks[0] == 199
     assert unit.sent == len(addresses) - len(stale)
+    if addresses:  # nothing of it goes by after the last pixel
+        assert end == sink.clocks[-1]
 
 
 def test_the_least_sizes():

@@ -102,11 +102,11 @@ def test_many_frames(ports):
     kinds = (lambda n: random_list((7, n), 9), lambda n: triangles([], [], [], background=(n,) * 3),
              lambda n: same_depths(5, n),
              lambda n: triangles([PIXEL] * 3, [[n] * 3] * 3, [[[n, 1, k]] * 3 for k in range(3)]))
-    lists = [kinds[number % 4](number) for number in range(14)]
-    configuration = max((machine(listed, "3x(PMMT)", tag_bits=2, memory_ports=ports,
+    lists = [kinds[number % 4](number) for number in range(10)]
+    configuration = max((machine(listed, "3x(PMT)", tag_bits=2, memory_ports=ports,
                                  shading="gouraud") for listed in lists),
                         key=lambda wide: wide.fraction_bits)
-    assert len(list(frames(configuration, lists, abandoned=(2, 4, 9)))) == 11
+    assert len(list(frames(configuration, lists, abandoned=(2, 4, 8)))) == 7
 
 
 def bar(traffic: Traffic, words: int) -> float:
@@ -117,11 +117,11 @@ def bar(traffic: Traffic, words: int) -> float:
 
 def test_a_pixel_a_clock_and_little_else(record_property):
     """The longest list of each step, and a few clocks for the step and for each unit."""
-    lists = [same_depths(8, 1), triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4),
+    lists = [same_depths(4, 1), triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4),
              triangles([], [], [])]
     lists = [replace(listed, width=16, height=16, position=2 * listed.position)
              for listed in lists]
-    configuration = machine(lists[0], "4x(PMMMMT)", memory_ports=2)
+    configuration = machine(lists[0], "3x(PMMT)", memory_ports=2)
     merged = list(frames(configuration, lists, stall=False))
     assert [traffic.steps for _, traffic in merged][::2] == [[256, 256], [0, 0]]
     for name, (simulation, traffic) in zip(("all", "some", "no"), merged, strict=True):
@@ -129,7 +129,7 @@ def test_a_pixel_a_clock_and_little_else(record_property):
         assert clocks <= bar(traffic, configuration.words)
         overhead = clocks - sum(traffic.steps)
         assert overhead <= 2 * 25
-        record_property("measured", f"4x(PMMMMT), {name} pixels drawn: {clocks} clocks to merge, "
+        record_property("measured", f"3x(PMMT), {name} pixels drawn: {clocks} clocks to merge, "
                                     f"{overhead} more than pixels sent in turn")
 
 
