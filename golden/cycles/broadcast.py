@@ -21,7 +21,7 @@ from .element_latencies import NEVER, Drawn, Pipeline
 Int64 = NDArray[np.int64]
 
 #: Clocks from the command to draw the lists until each node sends the first triangle of its own.
-LIST_LATENCY = 3
+LIST_LATENCY = 2
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from cardcage.golden.specification.sampling_grid import Grid
 NEVER = -10**9
 
 #: Clocks from the command to draw lists to the first triangle.
-LISTS = 3
+LISTS = 2
 
 
 def walked_by_hand(configuration: MachineConfiguration, listed: DisplayList, pipeline: Pipeline):
