@@ -63,7 +63,7 @@ def test_set_up():
 
 
 def test_lists():
-    assert LIST_LATENCY == NodeGate.list_latency
+    assert NodeGate.list_latency == LIST_LATENCY
 
 
 def counted(configuration: MachineConfiguration, lists: list[DisplayList]) -> list[int]:
