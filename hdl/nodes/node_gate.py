@@ -39,7 +39,7 @@ class NodeGate(wiring.Component):
     Cox & Hanrahan 1993, section 1: each processor has a subset of the graphics database.
     """
 
-    list_latency = 1 + ListMemory.latency
+    list_latency = ListMemory.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration

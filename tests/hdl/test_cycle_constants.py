@@ -13,7 +13,7 @@ import pytest
 from cycle_lists import scene
 from wide_machines import wide_machine
 
-from cardcage.golden.cycles.broadcast import SetupTiming
+from cardcage.golden.cycles.broadcast import LIST_LATENCY, SetupTiming
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
 from cardcage.golden.cycles.one_port_lanes import LANE_START
@@ -24,6 +24,7 @@ from cardcage.golden.specification.display_list import DisplayList
 from cardcage.hdl.depth_test.one_port import OnePortDepthTest
 from cardcage.hdl.depth_test.one_port_lane import OnePortLane
 from cardcage.hdl.depth_test.two_ports import TwoPortDepthTest
+from cardcage.hdl.nodes.node_gate import NodeGate
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
 from cardcage.hdl.processing_element.processing_element import SPANS_LATENCY
 from cardcage.hdl.rasteriser.fragment_stepper import FragmentStepper
@@ -59,6 +60,10 @@ def test_a_lane():
 
 def test_set_up():
     assert SetupTiming(interval=3).leaving == TriangleSetup.leaving
+
+
+def test_lists():
+    assert NodeGate.list_latency == LIST_LATENCY
 
 
 def counted(configuration: MachineConfiguration, lists: list[DisplayList]) -> list[int]:

@@ -31,6 +31,8 @@ class Triangle:
         if configuration.shading == "gouraud":
             self.widths |= dict.fromkeys(CHANNELS, (configuration.channel_plane_bits, 8))
         self.planes = {name: source.getrandbits(8) for name in CHANNELS}
+        if configuration.order_bits:
+            self.planes["round"] = source.getrandbits(configuration.order_bits)
         at = source.randrange(configuration.width), source.randrange(configuration.height)
         for name, (bits, value_bits) in self.widths.items():
             edges = ((1 << bits) - 1, 1 << bits - 1, 0)
@@ -44,7 +46,7 @@ class Triangle:
         self.at = at
 
     def fragment(self, pixel):
-        """(unit, address, depth, color), and the sides on which it was saturated."""
+        """(unit, address, rank, color), and the sides on which it was saturated."""
         limits = {"depth": (1 << self.configuration.depth_bits) - 2}
         words, sides = {}, []
         for name in ("depth", *CHANNELS):
@@ -61,7 +63,8 @@ class Triangle:
         interlace = self.configuration.interlace
         x, y = pixel["x"], pixel["y"]
         color = sum(words[name] << 8 * place for place, name in enumerate(CHANNELS))
-        return (interlace.unit(x, y), interlace.address(x, y), words["depth"], color), sides
+        rank = words["depth"] << self.configuration.order_bits | self.planes.get("round", 0)
+        return (interlace.unit(x, y), interlace.address(x, y), rank, color), sides
 
 
 def random_pixels(configuration, seed, count, more=3):
@@ -93,6 +96,8 @@ def configurations():
         "no fraction": small_machine("PM", 8, 8, fraction_bits=0, shading="gouraud"),
         "two bits of depth": small_machine("PM", 8, 8, depth_bits=2, fraction_bits=4),
         "sixteen units": small_machine("PM 15xM", 16, 4),
+        "nodes": small_machine("3x(PMMC)", 8, 8, order_bits=3),
+        "nodes without an order": small_machine("2x(PMT)", 8, 8, order_bits=0, shading="gouraud"),
     }
 
 

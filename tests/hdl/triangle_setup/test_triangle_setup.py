@@ -35,14 +35,27 @@ def flattened(configuration, triangle):
     return dict(fields(commands.prepared_triangle_layout(configuration), 0))
 
 
+def shares(configuration, display_list):
+    """A round and a node for each triangle, any that their bits hold."""
+    source = np.random.default_rng(len(display_list.position))
+    bits = {"round": configuration.order_bits, "node": configuration.node_bits}
+    return {name: source.integers(0, 1 << width, len(display_list.position))
+            for name, width in bits.items() if width}
+
+
 def run(configuration, display_list, pause=(no_pause, no_pause), after=4):
     """Every triangle of the list through the unit; all that comes out is compared."""
     layout = commands.prepared_triangle_layout(configuration)
-    expected = [commands.pack(layout, values) for values in
-                prepared_values(configuration, prepare(configuration, display_list))]
+    prepared, share = prepare(configuration, display_list), shares(configuration, display_list)
+    expected = []
+    for primitive, values in zip(prepared.primitive, prepared_values(configuration, prepared),
+                                 strict=True):
+        own = {name: int(array[primitive]) for name, array in share.items()}
+        values["planes"] |= own
+        expected.append(commands.pack(layout, values | own))
     dut = TriangleSetup(configuration=configuration)
     words = [word >> commands.BODY_OFFSET
-             for word in triangle_words.triangles(configuration, display_list)]
+             for word in triangle_words.triangles(configuration, display_list, share)]
     source = Source(dut.vertices, words, pause[0])
     sink = Sink(dut.triangles, len(expected), pause[1])
     held = []
@@ -78,11 +91,13 @@ KINDS = {
     "both halved": {"words": 64, "shading": "gouraud"},
     "units pulled": {"words": 16, "maximum_units": 16, "sub_bits": 5},
     "one pixel": {"words": 1, "setup_interval": 3},
+    "nodes": {"cards": "5x(PMC)", "order_bits": 5, "shading": "gouraud"},
+    "nodes without an order": {"cards": "2x(PMT)", "order_bits": 0, "setup_interval": 7},
 }
 
 
 def machine(kind):
-    return small_machine("PM", **{"width": 16, "height": 16} | KINDS[kind])
+    return small_machine(**{"cards": "PM", "width": 16, "height": 16} | KINDS[kind])
 
 
 def scene(configuration, seed, count):
