@@ -59,8 +59,8 @@ class Board:
         if self.merge:
             machine["packet"] = "contiguous"  # no order beside the depths
         configuration = MachineConfiguration(
-            cards=f"2x({cards}{self.merge})" if self.merge else cards, width=width, height=height, **machine,
-            **on_screen_widths(width, height, SUB_BITS))
+            cards=f"2x({cards}{self.merge})" if self.merge else cards,
+            width=width, height=height, **machine, **on_screen_widths(width, height, SUB_BITS))
         return Part(configuration, self.name, self.build, self.mapping)
 
 
