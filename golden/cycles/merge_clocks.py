@@ -6,7 +6,9 @@ the sender to the receiver, and as what goes before the first pixel and after th
     step = STEP_CLOCKS + clocks of the longest send + nodes on the way · HOP_CLOCKS
 
 A pixel takes a clock.  Where units have one port it is read and, if what comes is nearer, written,
-and since pixels come unit by unit that is all at one port, which the scan has now and then.
+and since pixels come unit by unit that is all at one port, which the scan has now and then.  With
+several units that is more than it takes, by up to a third: what waits before one port is done while
+pixels for the next one come.
 
 A chain merges while it is scanned, which takes no clock of a frame.
 """
