@@ -25,6 +25,8 @@ from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
 from .memory_unit.two_port_memory import TwoPortMemory
 from .memory_unit.word_parts import word_parts
+from .merging.drawn_map import DrawnMap
+from .merging.nearest_word import NearestWord
 from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
@@ -59,10 +61,17 @@ def _depth(configuration: MachineConfiguration) -> dict[str, int]:
 def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
     """A merge card is as in a cage that it ends, where the configuration has none."""
     letter = LETTERS.get(name)
-    if letter in MERGE_CARDS and letter != configuration.merge:
-        configuration = replace(configuration, cards="".join(
-            cards + letter for cards in configuration.node_cards))
+    if letter in MERGE_CARDS:
+        configuration = _ended_by(letter, configuration)
     return BOARDS[name](configuration=configuration)
+
+
+def _ended_by(letter: str, configuration: MachineConfiguration) -> MachineConfiguration:
+    """The configuration with nodes that are ended by that card."""
+    if letter == configuration.merge:
+        return configuration
+    return replace(configuration, maximum_nodes=0, cards="".join(
+        cards + letter for cards in configuration.node_cards))
 
 
 #: Makes a component as a machine of that configuration has it; the boards first.
@@ -71,6 +80,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "depth_read_back": lambda c: DepthReadBack(**memory_bus_bits(c)),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
+    "drawn_map": lambda c: DrawnMap(words=c.words),
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
@@ -79,6 +89,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
     "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
+    "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),

@@ -35,7 +35,7 @@ class Nodes(Organisation):
     def fault(self) -> Fault | None:
         if self.shares_differ or any(node.refused for node in self.each):
             return Fault.UNITS_UNSUPPORTED
-        if len({node.resolution for node in self.each}) > 1:
+        if len(set(self.node_units)) > 1:
             return Fault.NODES_DIFFER
         return None
 

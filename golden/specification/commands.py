@@ -68,7 +68,7 @@ class Fault(IntEnum):
     UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
     UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two, or shares that must
     # be equal are not: nothing is drawn
-    NODES_DIFFER = 3  # nodes have different resolutions: nothing is drawn
+    NODES_DIFFER = 3  # nodes have different numbers of memory units: nothing is drawn
     LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
 
 

@@ -97,23 +97,20 @@ class NodeControl(OneNode):
         """Nodes' reports as they pass: each must be like the first one."""
         response = controller.right.response
         report = response_fields(ResponseKind.NODE, response.payload.value)
-        resolution = Signal(commands.RESPONSE_VALUE_BITS, name="node_resolution")
-        first = Signal(commands.RESPONSE_VALUE_BITS, name="first_resolution")
-        known = Signal(name="first_known")
-        with m.Switch(report.units):
-            for interlace in self.configuration.interlaces():
-                with m.Case(interlace.units):
-                    m.d.comb += resolution.eq(commands.response_value(
-                        ResponseKind.PICTURE, width=interlace.width, height=interlace.height))
+        first = Signal.like(report.units, name="first_units")
+        known, supported = Signal(name="first_known"), Signal(name="node_supported")
+        numbers = [interlace.units for interlace in self.configuration.interlaces()]
+        with m.Switch(report.units), m.Case(*numbers):
+            m.d.comb += supported.eq(1)
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.NODE)):
-            m.d.sync += [self.units.eq(self.units + report.units), known.eq(1)]
-            with m.If(resolution == 0):
-                m.d.sync += self.unsupported.eq(1)
-            with m.If(~known):
-                m.d.sync += first.eq(resolution)
-            with m.Elif(resolution != first):
-                m.d.sync += self.differ.eq(1)
+            m.d.sync += [
+                self.units.eq(self.units + report.units),
+                self.unsupported.eq(self.unsupported | ~supported),
+                self.differ.eq(self.differ | (known & (report.units != first))),
+                known.eq(1),
+                first.eq(report.units),
+            ]
 
     def all_units(self, controller):
         return self.units

@@ -11,7 +11,7 @@ from cardcage.testbenches.export.verilog import component_ports
 
 def test_every_component_is_a_part_of_a_machine(monkeypatch):
     """Of its class, with its ports: in a machine that sets triangles up, of one kind of memory or
-    the other."""
+    the other, of one node or of nodes that merge in one way or the other."""
     parts = []
     made = wiring.Component.__init__
 
@@ -20,8 +20,8 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
         parts.append(self)
 
     lonely = set(COMPONENTS)
-    for ports in (1, 2):
-        configuration = small_machine("PMMPMM", 9, 7, shading="gouraud", setup="hardware",
+    for cards, ports in (("PMMPMM", 1), ("PMMPMM", 2), ("PMMC", 1), ("PMMT", 1)):
+        configuration = small_machine(cards, 9, 7, shading="gouraud", setup="hardware",
                                       memory_ports=ports)
         with monkeypatch.context() as patch:
             patch.setattr(wiring.Component, "__init__", note)
