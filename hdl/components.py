@@ -67,10 +67,10 @@ def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
 
 
 def _ended_by(letter: str, configuration: MachineConfiguration) -> MachineConfiguration:
-    """The configuration with nodes that are ended by that card."""
+    """The configuration with nodes that are ended by that card, of which there may be two."""
     if letter == configuration.merge:
         return configuration
-    return replace(configuration, maximum_nodes=0, cards="".join(
+    return replace(configuration, maximum_nodes=2, cards="".join(
         cards + letter for cards in configuration.node_cards))
 
 

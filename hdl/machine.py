@@ -32,9 +32,9 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "central_broadcast_controller": CentralBroadcastController,
     "processing_element": ProcessingElement,
     "memory_unit": MemoryUnit,
+    "video_scan_generator": VideoScanGenerator,
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
-    "video_scan_generator": VideoScanGenerator,
 }
 
 #: The boards that slots can hold, by their letter in the card order.
