@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import methodcaller
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
 from ..render import DEFAULT_SCENE
 from ..support.atomic_output import atomic_folder, output_errors
-from ..support.processes import calls_in_processes
+from ..support.processes import cores, in_processes
 from .cage import Cage, CageJob, CageRun, Refused
 from .node_sweep import Curve, Place, Point, PointJob, curves_of, places, time_of
 
@@ -193,7 +194,11 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
              for place in points]
-    results = list(_results(jobs, options.processes, step or (lambda doing: None)))
+    step = step or (lambda doing: None)
+    doing = f"{len(jobs)} cages, {min(len(jobs), options.processes or cores())} at a time"
+    step(doing)
+    results: list[Any] = in_processes(methodcaller("run"), jobs, options.processes,
+                                      partial(step, doing))
     drawn, found = results[:len(cages)], results[len(cages):]
     runs = [run for run in drawn if isinstance(run, CageRun)]
     refused = [each for each in [*drawn, *found] if isinstance(each, Refused)]
@@ -214,17 +219,6 @@ def _parses(cage: Cage) -> bool:
 def _key(place: Place) -> tuple[str, bool] | None:
     """As which cage of the comparison a point is drawn, if it is one."""
     return None if place.copies > 1 else (parse_cards(place.cage.cards), place.retained)
-
-
-def _results(jobs: Sequence[CageJob | PointJob], processes: int | None,
-             step: Step) -> Iterator[Any]:
-    """Of each job, in their order; ``step`` is told of those that are done."""
-    step(f"{len(jobs)} cages")
-    done: dict[int, Any] = {}
-    for place, result in calls_in_processes(methodcaller("run"), jobs, processes):
-        done[place] = result
-        step(f"{len(jobs)} cages")
-    yield from (done[place] for place in range(len(jobs)))
 
 
 def _curves(found: Sequence[Any], runs: Sequence[CageRun]) -> tuple[list[Curve], list[str]]:

@@ -8,8 +8,8 @@ import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import redirect_stdout
+from collections.abc import Callable, Sequence
+from contextlib import redirect_stdout, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 from typing import Any, TypeVar
@@ -37,43 +37,49 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def calls_in_processes(function: Callable[[Argument], Result], arguments: Sequence[Argument],
-                       processes: int | None = None) -> Iterator[tuple[int, Result]]:
-    """The place of each argument, and what ``function`` makes of it, as they become ready.
+def in_processes(function: Callable[[Argument], Result], arguments: Sequence[Argument],
+                 processes: int | None = None, done: Callable[[], None] = lambda: None
+                 ) -> list[Result]:
+    """What ``function`` makes of each argument.
 
     ``function``   of a module, not a local one; it, arguments and results can be pickled
     ``processes``  at the same time, as many as there are cores by default; with 1, or for a single
                    argument, there is no other process
+    ``done``       is called as each result is there
 
-    What a call raises is raised here.  Where this is left early, by whatever, the other calls are
+    What a call raises is raised here.  Then, and where this is interrupted, the other calls are
     told to end, which they do as a command does that is interrupted, and waited for.
     """
     processes = min(cores() if processes is None else processes, len(arguments))
     if processes <= 1:
-        yield from ((place, function(argument)) for place, argument in enumerate(arguments))
-        return
+        return [_told(function(argument), done) for argument in arguments]
     waiting = iter(enumerate(arguments))
     running: dict[Any, tuple[int, subprocess.Popen[bytes]]] = {}
+    results: dict[int, Result] = {}
     try:
-        while True:
+        while len(results) < len(arguments):
             while len(running) < processes and (call := next(waiting, None)) is not None:
                 place, argument = call
                 with uninterrupted():
                     process = _start(function, argument)
                     running[process.stdout] = place, process
-            if not running:
-                return
             for output in wait(list(running)):
                 place, process = running[output]
-                result = _result(process)
+                results[place] = _told(_result(process), done)
                 del running[output]
-                yield place, result
     finally:
         with uninterrupted():
             for _, process in running.values():
                 process.terminate()
             for _, process in running.values():
-                process.communicate()
+                with process:  # which closes its output and waits for it
+                    pass
+    return [results[place] for place in range(len(arguments))]
+
+
+def _told(result: Result, done: Callable[[], None]) -> Result:
+    done()
+    return result
 
 
 def _start(function: Callable[[Argument], Result], argument: Argument) -> subprocess.Popen[bytes]:
@@ -109,4 +115,6 @@ def serve() -> None:
             answer = pickle.dumps(result)
     except Interrupted as interruption:
         sys.exit(interruption.status)
-    sys.stdout.buffer.write(answer)
+    with suppress(BrokenPipeError):  # nobody waits any more
+        sys.stdout.buffer.write(answer)
+        sys.stdout.flush()
