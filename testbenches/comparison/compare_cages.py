@@ -160,10 +160,10 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     ``refused``, and a picture that differs is no exception: see ``equal``.
 
     >>> import cardcage
-    >>> comparison = cardcage.compare_cages("tetra:depth=0", ["PM", "2x(PMT)"], retain=False,
-    ...                                     size=(16, 16), engine="pysim", processes=1)
+    >>> comparison = cardcage.compare_cages("tetra:depth=0", ["PM", "2x(PMC)"], retain=False,
+    ...                                     size=(8, 8), engine="pysim")
     >>> comparison.identical, [run.fragments for run in comparison.runs]
-    (True, [78, 78])
+    (True, [38, 38])
     """
     options = CompareOptions(MachineOptions(**machine), tuple(cards), retain, tuple(nodes),
                              simulate, cells, engine, random_memory, processes)

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ..reports.frame_pictures import data_uri, different_pixels, png
 from ..reports.page import page_environment
 from ..support.any_characters import readable
-from .cage import CageRun
 from .compare_cages import CageComparison
 from .comparison_charts import figures_chart, sweep_chart
 from .comparison_facts import comparison_facts
@@ -54,20 +53,14 @@ def comparison_page(comparison: CageComparison, facts: dict[str, Any]) -> str:
 
 
 def _pictures(comparison: CageComparison) -> list[tuple[str, str]]:
-    """Picture and caption: the golden one, and of each other picture what differs."""
-    first = comparison.runs[0].comparison if comparison.runs else None
-    found = []
-    if first is not None:
-        found.append((data_uri(first.expected), "the golden picture"))
+    """Picture and caption: the golden one; another one's own, or what differs from it."""
+    golden = golden_picture(comparison)
+    found = [(data_uri(golden), "the golden picture")]
     for group in comparison.pictures:
-        shown = group[0]
+        shown = group[0].comparison
         where = ", ".join(run.cage.label for run in group)
-        if shown.comparison.equal and not comparison.identical and len(comparison.pictures) > 1:
-            found.append((data_uri(shown.simulation.video), f"on {where}"))
-        elif not shown.comparison.equal:
-            found.append((data_uri(_different(shown)), f"{where}: grey equal, red different"))
+        if not shown.equal:
+            found.append((data_uri(different_pixels(shown)), f"{where}: grey equal, red different"))
+        elif not np.array_equal(shown.expected, golden):
+            found.append((data_uri(shown.expected), f"on {where}"))
     return found
-
-
-def _different(run: CageRun) -> NDArray[np.uint8]:
-    return different_pixels(run.comparison)

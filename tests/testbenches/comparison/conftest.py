@@ -11,7 +11,7 @@ from cardcage.testbenches.comparison.compare_cages import compare_cages
 SCENE = "random:n=12,size=5,seed=5"
 CARDS = ("2x(PM)", "2x(PMC)", "2x(PMT)")
 #: ``processes``: none that would not see the recordings.
-SMALL = {"size": (8, 8), "processes": 1}
+SMALL = {"size": (8, 8), "shading": "flat", "processes": 1}
 
 
 @pytest.fixture(scope="session")
@@ -52,10 +52,10 @@ class TamperingRuns:
 
 @pytest.fixture
 def tampered(small, recording, monkeypatch):
-    """A function: the comparison where runs of ``cards`` have other values."""
+    """A function: the comparison where runs of one machine, by its cards, have other values."""
 
-    def run(cards, change, **options):
-        engine = TamperingRuns(recording, cards, change)
+    def run(machine, change, **options):
+        engine = TamperingRuns(recording, machine, change)
         monkeypatch.setattr("cardcage.testbenches.engines.choose_engine.ENGINES",
                             {"pysim": lambda: engine})
         return small(**options)

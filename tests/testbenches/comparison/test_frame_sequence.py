@@ -16,7 +16,8 @@ from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.video_monitor import VideoMonitor
 from cardcage.testbenches.frames.frame_job import frame_commands
 
-LIST = make_display_list("random:n=12,size=5,seed=5", width=8, height=8).display_list
+LIST = make_display_list("random:n=12,size=5,seed=5", width=8, height=8,
+                         shading="flat").display_list
 #: The last triangle covers the middle of the picture, before all others, in a colour of its own.
 MARKED = replace(
     LIST, depth=np.concatenate([LIST.depth[:-1], [[0, 0, 0]]]),
