@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _H
     from .golden.specification.display_list import DisplayList
     from .golden.specification.errors import InputError
     from .hdl.machine import Machine
+    from .testbenches.comparison.compare_cages import compare_cages
     from .testbenches.export.export_files import export
     from .testbenches.frames.compare import compare
     from .testbenches.frames.responses import MachineError
@@ -39,6 +40,7 @@ __all__ = [
     "MachineError",
     "__version__",
     "compare",
+    "compare_cages",
     "export",
     "make_display_list",
     "plan",
@@ -54,6 +56,7 @@ _HOMES = {
     "MachineConfiguration": "golden.specification.configuration",
     "MachineError": "testbenches.frames.responses",
     "compare": "testbenches.frames.compare",
+    "compare_cages": "testbenches.comparison.compare_cages",
     "export": "testbenches.export.export_files",
     "make_display_list": "golden.scene_display_list",
     "plan": "golden.planning.machine_plan",

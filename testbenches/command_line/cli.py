@@ -8,6 +8,7 @@ from .boards_command import boards_command
 from .cache_command import cache_command
 from .check_verilog_command import check_verilog_command
 from .command_group import CommandGroup
+from .compare_command import compare_command
 from .engines_command import engines_command
 from .export_command import export_command
 from .plan_command import plan_command
@@ -40,8 +41,8 @@ def main(context: click.Context) -> None:
 
 
 for command in (bench_command, boards_command, cache_command, check_verilog_command,
-                engines_command, export_command, plan_command, precision_command, render_command,
-                scenes_command):
+                compare_command, engines_command, export_command, plan_command, precision_command,
+                render_command, scenes_command):
     main.add_command(command)
 
 

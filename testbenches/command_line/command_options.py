@@ -76,11 +76,13 @@ class Several(click.ParamType):
         return tuple(self.each.convert(word, param, ctx) for word in value.split(","))
 
 
+_BOARDS = ", ".join(f"{letter} {name}" for letter, name in CARD_NAMES.items())
+
 #: Together one for each field of ``machine_options.MachineOptions``.
+_CARDS_OPTION = click.option(
+    "--cards", metavar="CARDS",
+    help=f"Order of the boards, left to right: {_BOARDS}.  [default: 2x(PMM)]")
 _CAGE_OPTIONS = (
-    click.option("--cards", metavar="CARDS", help="Order of the boards, left to right: "
-                 + ", ".join(f"{letter} {name}" for letter, name in CARD_NAMES.items())
-                 + ".  [default: 2x(PMM)]"),
     click.option("--size", type=Size(), metavar="WxH",
                  help="Highest resolution.  [default: 64x64]"),
     click.option("--preset", type=click.Choice(list(PRESETS)),
@@ -122,22 +124,41 @@ _NODE_OPTIONS = (
     click.option("--packet", type=Packet(), metavar="N|contiguous",
                  help="Where merge cards end nodes: how many triangles that follow one another go "
                  "to one node, or one run of the list for each node.  [default: 1]"),
-    click.option("--retain", is_flag=True, default=None, help="Give each node a list memory: its "
-                 "triangles are loaded once, and all nodes draw theirs at the same time."),
     click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
                  help="Triangles that each list memory holds; gives nodes one, like --retain.  "
                  "[default: what the scene needs]"),
 )
+_RETAIN_OPTION = click.option(
+    "--retain", is_flag=True, default=None, help="Give each node a list memory: its triangles are "
+    "loaded once, and all nodes draw theirs at the same time.")
+
+#: In place of these where there are several cages.
+_SEVERAL_CARDS_OPTION = click.option(
+    "--cards", multiple=True, metavar="CARDS",
+    help=f"A cage, its boards from left to right: {_BOARDS}; give it once for each cage.  "
+    "[default: 4x(PMM), 4x(PMMC) and 4x(PMMT)]")
+_RETAIN_OR_NOT_OPTION = click.option(
+    "--retain/--immediate", default=None, help="Cages of nodes only with list memories, of which "
+    "nodes draw triangles that were loaded once, or only without.  [default: both]")
 
 
 def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
-    return _with(command, _CAGE_OPTIONS + _PRECISION_OPTIONS + _FURTHER_OPTIONS + _NODE_OPTIONS)
+    return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS, *_FURTHER_OPTIONS,
+                           _RETAIN_OPTION, *_NODE_OPTIONS))
+
+
+def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that choose several machines: ``cards`` are as many as were
+    asked for, all else is for each of them."""
+    return _with(command, (_SEVERAL_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS,
+                           *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS))
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine, but for its precision."""
-    return _with(command, _CAGE_OPTIONS + _FURTHER_OPTIONS + _NODE_OPTIONS)
+    return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_FURTHER_OPTIONS, _RETAIN_OPTION,
+                           *_NODE_OPTIONS))
 
 
 def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]

@@ -19,7 +19,7 @@ from ...hdl.components import COMPONENTS
 from ...hdl.machine import Machine
 from .port_meanings import described_ports, stated_timing
 
-__all__ = ["component_for", "describe"]
+__all__ = ["component_for", "describe", "memories"]
 
 #: The four boards and those of their parts that state a latency or a throughput.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
@@ -64,7 +64,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
                    for part in timed},
         "merging": _merging(configuration),
         "commands": _command_words(configuration),
-        "memories": _memories(verilog, modules, top),
+        "memories": memories(verilog, top),
     }
 
 
@@ -185,8 +185,9 @@ def _modules(verilog: str) -> dict[str, str]:
             re.finditer(r"^module (\S+?)\(.*?^endmodule", verilog, re.DOTALL | re.MULTILINE)}
 
 
-def _memories(verilog: str, modules: dict[str, str], top: str) -> list[dict[str, Any]]:
-    """The memory modules and how often each is instantiated below ``top``."""
+def memories(verilog: str, top: str = "machine") -> list[dict[str, Any]]:
+    """The memory modules of a Verilog text, and how often each is instantiated below ``top``."""
+    modules = _modules(verilog)
     counts = Counter({top: 1})
     waiting = [top]
     while waiting:  # each level of the hierarchy adds to the one below

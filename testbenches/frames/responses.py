@@ -116,20 +116,22 @@ class Answers:
     def _fields(self, kind: ResponseKind) -> list[dict[str, int]]:
         return [response_fields(kind, value) for value in self._values[kind]]
 
-    def frame(self, number: int, reading: int) -> Simulation:
-        """Frame ``number``, where each frame's depths were read back once.
+    def frame(self, number: int, reading: int, read_back: int | None = None) -> Simulation:
+        """Frame ``number``.
 
         Its work is what that ``reading`` of the counters says, its activity the record that ends
-        with the reading, if the engine keeps any.
+        with the reading, if the engine keeps any; its depths are those of that ``read_back``, by
+        default as if each frame's were read back once.
         """
         run, organisation = self._run, self._organisation
         words = organisation.depths_read_back
+        depths = words * (number if read_back is None else read_back)
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
         [units] = self._fields(ResponseKind.UNITS)
         return Simulation(
             video=next(scan.picture for scan in run.scans if scan.cycle > shown),
             depth=organisation.depth_image(
-                self._values[ResponseKind.DEPTH][words * number:words * (number + 1)]),
+                self._values[ResponseKind.DEPTH][depths:depths + words]),
             resolution=self._resolution,
             work=[Work(node, domain["first"], domain["units"], int(fragments), int(busy))
                   for (node, *_), domain, fragments, busy in zip(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -53,10 +55,17 @@ def simulate_frame(configuration: MachineConfiguration, display_list: DisplayLis
     >>> simulation.video.shape, simulation.total
     ((16, 16, 3), 1)
     """
-    try:
+    with engine_errors(engine):
         return simulate(configuration, display_list, make_engine(engine), **options)
+
+
+@contextmanager
+def engine_errors(engine: str) -> Iterator[None]:
+    """``InputError`` where the engine of that name cannot run here, ``MachineError`` where the
+    machine fails."""
+    try:
+        yield
     except ToolMissingError as missing:
         raise InputError(f"--engine {engine}: {missing}; or use --engine pysim") from None
     except (TimeoutError, AssertionError) as error:
         raise MachineError(f"the machine failed: {error}") from error
-

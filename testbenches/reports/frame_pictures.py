@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from ..frames.compare import Comparison
 from ..frames.rendering import Rendering
 
 Pixels = NDArray[np.uint8]
@@ -38,7 +39,11 @@ def color_difference(rendering: Rendering, reach: int = 0) -> Pixels:
 
     Red spreads ``reach`` pixels to every side, to be seen where the picture is shown smaller.
     """
-    comparison = rendering.comparison
+    return different_pixels(rendering.comparison, reach)
+
+
+def different_pixels(comparison: Comparison, reach: int = 0) -> Pixels:
+    """The same of a comparison alone."""
     luminance = comparison.expected.astype(np.float64) @ np.array([0.299, 0.587, 0.114])
     return _marked(luminance / 255, _spread(comparison.color_different, reach),
                    comparison.color_orphans)

@@ -1,0 +1,81 @@
+"""``cardcage compare``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ...golden.specification.configuration import MAXIMUM_NODES
+from ..comparison.compare_cages import DEFAULT_CARDS, DEFAULT_SIMULATE, compare_cages
+from ..comparison.comparison_facts import comparison_facts
+from ..comparison.comparison_table import comparison_table, comparison_text
+from ..engines.choose_engine import AUTO, ENGINES
+from ..render import DEFAULT_SCENE
+from .command_group import EXIT_DIFFERENT, warn
+from .command_options import Several, machine_options_of_cages
+from .progress import step_bar
+
+
+@click.command(name="compare")
+@click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
+@machine_options_of_cages
+@click.option("--nodes", type=Several(click.IntRange(1, MAXIMUM_NODES), "N,…"),
+              help="Also each kind of cage with so many nodes: speed-up of the scene, and of one "
+              "that grows with the machine.")
+@click.option("--simulate", type=click.IntRange(0, MAXIMUM_NODES), default=DEFAULT_SIMULATE,
+              show_default=True, metavar="N", help="With --nodes: simulate cages of up to N nodes; "
+              "of all of them the cycle model is asked.")
+@click.option("--cells", is_flag=True, help="Also count the cells of every board with yosys, half "
+              "a minute for each cage.")
+@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+              help="The simulator.")
+@click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
+              help="Start with random words in every memory, as after power-on.")
+@click.option("--json", "as_json", is_flag=True, help="For programs: print one object.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
+              show_default=True, metavar="DIR", help="Folder of the report.")
+@click.pass_obj
+def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
+                    nodes: tuple[int, ...] | None, as_json: bool, **options: Any) -> None:
+    """Draw SCENE on several cages and compare what they show and what it costs.
+
+    One element sees every triangle, or nodes each draw a share of them and merge their pictures, in
+    a chain (C) while the screen is scanned or in a tree (T) when drawing is done.  Every pixel,
+    every fragment and every pixel sent between nodes is compared with the golden model.  For each
+    cage: clocks to load, draw and merge, the latency from the last triangle to the screen, the
+    busiest node's share, what goes over the busiest link, memory.  All other options are for all
+    cages.  The report goes to DIR: open comparison.html.  Cages are simulated at the same time, on
+    all cores.
+
+    \b
+    Examples:
+      cardcage compare
+      cardcage compare mesh.obj --size 128x128 --memory-ports 2
+      cardcage compare teapot --cards '8x(PMM)' --cards '8x(PMMT)' --packet contiguous
+      cardcage compare teapot --cards '4x(PMMPMMC)' --cards '2x(PMMPMMPMMPMMC)' --immediate
+      cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16
+      cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16,32,64 --simulate 0
+      cardcage compare random:n=40,size=12,seed=7 --size 32x32 --cells --json
+
+    Exit status: 0 every picture and every count as golden, 1 otherwise, or a cage delivers no
+    picture, 2 the input or the system is at fault, or no cage can be built for the scene.
+    """
+    with step_bar(1) as step:
+        comparison = compare_cages(scene, cards or DEFAULT_CARDS, nodes=nodes or (), step=step,
+                                   command_line=command_line, **options)
+    for warning in comparison.warnings:
+        warn(warning)
+    if as_json:
+        click.echo(json.dumps(comparison_facts(comparison), indent=2))
+    else:
+        if sys.stdout.isatty():
+            comparison_table(comparison)
+        else:
+            click.echo(comparison_text(comparison))
+        click.echo(f"report: {comparison.report}")
+    if not comparison.equal:
+        click.get_current_context().exit(EXIT_DIFFERENT)

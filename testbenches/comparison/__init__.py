@@ -1,0 +1,1 @@
+"""One scene on several cages: pictures, clocks, what nodes send, memory."""

@@ -1,0 +1,181 @@
+"""One cage of a comparison: what is asked of it, and the run that answers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...golden.merging.cage import merge_cage
+from ...golden.merging.traffic import Traffic
+from ...golden.organisations.organisation_of import organisation_of
+from ...golden.planning.machine_plan import plan
+from ...golden.reference.exact import depth_complexity
+from ...golden.scene_display_list import SceneDisplayList
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
+from ..frames.compare import Comparison, compare
+from ..frames.responses import MachineError, Simulation
+from ..machine_options import MachineOptions, resolution_warnings
+from .cage_memory import Memory, cells_of, memories_of
+from .frame_sequence import Clocks, FrameSequence, Latency
+
+
+@dataclass(frozen=True)
+class Cage:
+    """``cards`` as they were asked for; ``retained``: nodes draw lists that were loaded once."""
+
+    cards: str
+    retained: bool = False
+
+    @property
+    def label(self) -> str:
+        return f"{self.cards} retained" if self.retained else self.cards
+
+    def options(self, asked: MachineOptions) -> MachineOptions:
+        """What is asked of this cage, of all that is asked of every one."""
+        return replace(asked, cards=self.cards, retain=self.retained or None,
+                       list_words=asked.list_words if self.retained else None)
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A cage without figures: it cannot be built for the scene, or, ``failed``, delivers none."""
+
+    cage: Cage
+    reason: str
+    failed: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.cage.label}: {self.reason}"
+
+
+@dataclass(frozen=True, eq=False)
+class NodeFigures:
+    """What one node did for a picture, in the machine's own count, and golden's.
+
+    ``sent``  pixels to the next node, or to the pins
+    """
+
+    fragments: int
+    golden_fragments: int
+    sent: int
+    golden_sent: int
+
+
+@dataclass(frozen=True, eq=False)
+class CageRun:
+    """What a cage did with a scene.
+
+    ``traffic``      as the machine counted its pixels
+    ``nodes``        left to right
+    ``memories``     every one there is
+    ``cells``        None where they were not counted
+    ``differences``  a line each: what is not as the golden model has it
+    ``warnings``     a line each
+    """
+
+    cage: Cage
+    configuration: MachineConfiguration
+    simulation: Simulation
+    comparison: Comparison
+    clocks: Clocks
+    latency: Latency | None
+    nodes: Sequence[NodeFigures]
+    traffic: Traffic
+    memories: Sequence[Memory]
+    cells: dict[str, int] | None
+    differences: Sequence[str]
+    warnings: Sequence[str]
+
+    @property
+    def fragments(self) -> int:
+        return sum(node.fragments for node in self.nodes)
+
+    @property
+    def busiest_share(self) -> float:
+        """The most fragments of a node, as a part of all; 0 where there are none."""
+        return max(node.fragments for node in self.nodes) / max(self.fragments, 1)
+
+    @property
+    def memory_bits(self) -> int:
+        return sum(memory.all_bits for memory in self.memories)
+
+
+@dataclass(frozen=True)
+class CageJob:
+    """A cage that is to draw ``scene``; ``cells``: count them, too."""
+
+    cage: Cage
+    scene: SceneDisplayList
+    options: MachineOptions
+    engine: str
+    random_memory: int | None = None
+    cells: bool = False
+
+    def run(self) -> CageRun | Refused:
+        try:
+            return self._run()
+        except InputError as error:
+            return Refused(self.cage, str(error))
+        except MachineError as error:
+            return Refused(self.cage, str(error), failed=True)
+
+    def _run(self) -> CageRun:
+        display_list = self.scene.display_list
+        configuration = plan(display_list,
+                             **self.cage.options(self.options).for_plan()).configuration
+        frames = FrameSequence(configuration, display_list, self.engine, self.random_memory)
+        simulation = frames.simulation
+        comparison = compare(configuration, display_list, simulation)
+        golden = merge_cage(configuration, display_list)[1]
+        nodes = _nodes(configuration, display_list, simulation, golden)
+        return CageRun(
+            self.cage, configuration, simulation, comparison, frames.clocks,
+            frames.latency(comparison.golden), nodes,
+            replace(golden, sends=[send._replace(pixels=nodes[send.sender].sent)
+                                   for send in golden.sends]),
+            memories_of(configuration), cells_of(configuration) if self.cells else None,
+            [*_picture_differences(comparison, frames), *_count_differences(nodes)],
+            [*resolution_warnings(configuration), *simulation.notes])
+
+
+def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
+           simulation: Simulation, golden: Traffic) -> list[NodeFigures]:
+    organisation = organisation_of(configuration)
+    shares = organisation.shares(display_list.triangles)
+    sent, golden_sent = simulation.sent or [0], [0] * organisation.nodes
+    for send in golden.sends:
+        golden_sent[send.sender] += send.pixels
+    if organisation.merges and not organisation.merges_after_drawing:  # the last one's: to the pins
+        golden_sent[-1] = configuration.width * configuration.height
+    return [NodeFigures(
+        fragments=sum(work.fragments for work in simulation.work if work.node == node),
+        golden_fragments=int(depth_complexity(display_list.chosen(shares.of_node(node)),
+                                              **organisation.resolution.shifts).sum()),
+        sent=sent[node], golden_sent=golden_sent[node]) for node in range(organisation.nodes)]
+
+
+def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
+    found = []
+    if (first := comparison.first_difference) is not None:
+        found.append(f"{comparison.pixels_different:,} of {comparison.pixels_compared:,} colours "
+                     f"and {comparison.depths_different:,} of {comparison.depths_compared:,} "
+                     "depths differ, first at x {}, y {}".format(*first.pixel))
+    scans = frames.shown_scans
+    wrong = sum(not np.array_equal(scan.picture, frames.simulation.video) for scan in scans)
+    if wrong:
+        found.append(f"{wrong} of {len(scans)} scans, of frames of one scene, show another picture "
+                     "than the last")
+    return found
+
+
+def _count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
+    return [f"node {number} {verb} {got:,} {what}, golden {wanted:,}"
+            for number, node in enumerate(nodes)
+            for verb, what, got, wanted in (
+                ("drew", "fragments", node.fragments, node.golden_fragments),
+                ("sent", "pixels", node.sent, node.golden_sent))
+            if got != wanted]

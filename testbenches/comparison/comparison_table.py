@@ -1,0 +1,140 @@
+"""A comparison of cages for people: tables on a terminal, aligned lines elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import groupby
+
+from rich.console import Console
+
+from ...golden.organisations.organisation_of import organisation_of
+from ..support.text_table import TextTable
+from .cage import CageRun
+from .compare_cages import CageComparison
+from .node_sweep import Curve
+
+#: Stands for a figure that a cage does not have.
+NOTHING = "-"
+
+#: The rows of the table, under their headings.
+Rows = dict[str, Callable[[CageRun], str]]
+
+
+def _latency(name: str) -> Callable[[CageRun], str]:
+    return lambda run: NOTHING if run.latency is None else f"{getattr(run.latency, name):,}"
+
+
+def _sent(figure: Callable[[CageRun], int]) -> Callable[[CageRun], str]:
+    return lambda run: f"{figure(run):,}" if run.configuration.merge else NOTHING
+
+
+def _cells(name: str) -> Callable[[CageRun], str]:
+    return lambda run: NOTHING if run.cells is None else f"{run.cells[name]:,}"
+
+
+FIGURES: dict[str, Rows] = {
+    "clocks": {
+        "load the lists, once": lambda run: (NOTHING if run.clocks.load is None
+                                             else f"{run.clocks.load:,}"),
+        "draw": lambda run: f"{run.clocks.draw:,}",
+        "merge": lambda run: f"{run.clocks.merge:,}",
+        "a frame": lambda run: f"{run.clocks.frame:,}",
+    },
+    "clocks from the last triangle": {
+        "until the picture is complete": _latency("merged"),
+        "until its pixel is on the pins": _latency("pins"),
+    },
+    "work": {
+        "fragments": lambda run: f"{run.fragments:,}",
+        "of the busiest node": lambda run: f"{100 * run.busiest_share:.1f} %",
+    },
+    "sent between nodes": {
+        "pixels": _sent(lambda run: run.traffic.pixels),
+        "pixels on the busiest link": _sent(lambda run: run.traffic.busiest_piece),
+        "bits": _sent(lambda run: run.traffic.bits),
+        "bits on the busiest link": _sent(
+            lambda run: run.traffic.busiest_piece * run.traffic.pixel_bits),
+    },
+    "memory": {"bits": lambda run: f"{run.memory_bits:,}"},
+    "cells": {
+        "flip-flops": _cells("flip_flops"),
+        "gates": _cells("gates"),
+        "multiplier bits": _cells("multipliers"),
+    },
+}
+
+
+def figures(comparison: CageComparison) -> dict[str, list[tuple[str, list[str]]]]:
+    """Heading → rows, of each its name and a figure for each cage."""
+    counted = any(run.cells is not None for run in comparison.runs)
+    return {heading: [(name, [figure(run) for run in comparison.runs])
+                      for name, figure in rows.items()]
+            for heading, rows in FIGURES.items() if counted or heading != "cells"}
+
+
+def tables(comparison: CageComparison) -> list[TextTable]:
+    """The figures, and the speed-ups of the sweep."""
+    found = []
+    if comparison.runs:
+        found.append(TextTable(
+            "the cages", ("", *(run.cage.label for run in comparison.runs)),
+            tuple(row for heading, rows in figures(comparison).items() for row in (
+                (heading, *[""] * len(comparison.runs)),
+                *((f"  {name}", *words) for name, words in rows)))))
+    for growing, curves in groupby(comparison.curves, lambda curve: curve.growing):
+        found.append(speed_ups(list(curves), growing))
+    return found
+
+
+def speed_ups(curves: list[Curve], growing: bool) -> TextTable:
+    """Of one kind of scene: a line for each kind of cage, simulated beside the model's."""
+    nodes = sorted({point.place.nodes for curve in curves for point in curve.points})
+    rows = []
+    for curve in curves:
+        cells = dict.fromkeys(nodes, NOTHING)
+        for point, model, simulated in curve.speed_ups():
+            cells[point.place.nodes] = f"{model:.2f}" + (
+                "" if simulated is None else f" ({simulated:.2f})")
+        rows.append((curve.label, *cells.values()))
+    scene = "a scene that grows with the machine" if growing else "the scene as it is"
+    return TextTable(f"speed-up, {scene}: by the cycle model (simulated)",
+                     ("nodes", *map(str, nodes)), tuple(rows))
+
+
+def headline(comparison: CageComparison) -> list[str]:
+    """The verdict first."""
+    runs = comparison.runs
+    on_all = f"all {len(runs)} cages" if len(runs) > 1 else "the one cage"
+    if not comparison.equal:
+        lines = [f"DIFFERENT: {line}" for line in comparison.differences]
+    elif comparison.identical:
+        compared = runs[0].comparison
+        lines = [f"identical on {on_all}: {compared.pixels_compared:,} colours and "
+                 f"{compared.depths_compared:,} depths, all fragments, all pixels sent"]
+    else:
+        lines = [f"each as its golden picture, but {len(comparison.pictures)} pictures: "
+                 + "; ".join(_picture(group) for group in comparison.pictures)]
+    listed = comparison.scene.display_list
+    return [*lines, f"{comparison.scene.name}: {listed.triangles:,} triangles at "
+            f"{listed.width}x{listed.height}"]
+
+
+def _picture(group: list[CageRun]) -> str:
+    width, height, *_ = organisation_of(group[0].configuration).resolution
+    return f"{width}x{height} on {', '.join(run.cage.label for run in group)}"
+
+
+def comparison_text(comparison: CageComparison) -> str:
+    """Plain lines, the columns aligned."""
+    return "\n\n".join(["\n".join(headline(comparison)),
+                        *(table.text() for table in tables(comparison))])
+
+
+def comparison_table(comparison: CageComparison) -> None:
+    """The same as tables on the terminal."""
+    console = Console()
+    for line in headline(comparison):
+        console.print(line, highlight=False, soft_wrap=True)
+    for table in tables(comparison):
+        console.print(f"\n{table.title}", highlight=False, soft_wrap=True)
+        table.print()

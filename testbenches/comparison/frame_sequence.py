@@ -1,0 +1,169 @@
+"""A picture drawn several times one after the other, and what it costs when that goes on.
+
+The machine boots, loads lists where nodes have some, and draws::
+
+    FRAME_START  triangles or DRAW_LISTS  FRAME_END      as often as FRAMES
+    READ_DEPTH  READ_COUNTERS
+
+The first frame begins as the machine has booted, the next ones as the frame before is shown; the
+last one is what every figure is of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...golden.cycles.frame_clocks import most_frame_clocks
+from ...golden.organisations.organisation_of import organisation_of
+from ...golden.planning.scene_needs import fitted
+from ...golden.reference.triangle_setup import outline
+from ...golden.specification import commands
+from ...golden.specification.commands import Opcode, ResponseKind, opcode_of
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ...golden.specification.picture import Picture
+from ...golden.specification.sampling_grid import Grid
+from ..engines.choose_engine import make_engine
+from ..engines.engine import EngineRun, Job, Scan
+from ..frames.conversation import responses_owed
+from ..frames.frame_job import frame_commands
+from ..frames.responses import Answers, Simulation
+from ..frames.simulation import engine_errors
+
+#: From the merged picture of the last but one to that of the last is what a frame takes.
+FRAMES = 3
+
+
+@dataclass(frozen=True)
+class Clocks:
+    """What a frame takes, in clocks.
+
+    ``boot``   from reset until the first command can be taken
+    ``load``   from when the first ``LOAD`` is taken until ``DRAW_LISTS`` is; None where every
+               frame sends its triangles
+    ``draw``   from the frame's start until all processing elements are done
+    ``merge``  from there until scans can show the nodes' pictures as one
+    ``frame``  from one merged picture to the next, of frames that follow one another; a picture
+               waits for the beginning of a scan
+    """
+
+    boot: int
+    load: int | None
+    draw: int
+    merge: int
+    frame: int
+
+
+@dataclass(frozen=True)
+class Latency:
+    """Of the last triangle in the list of which a pixel is seen, in the last frame, in clocks from
+    when its command is taken, or the one that has it drawn from its list, ``DRAW_LISTS``.
+
+    ``triangle``  its number
+    ``pixel``     x, y on the video output: its first one that is seen, in the order of the scan
+    ``merged``    until the picture with it is complete
+    ``pins``      until that pixel is on the pins in the first scan that shows the picture
+    """
+
+    triangle: int
+    pixel: tuple[int, int]
+    merged: int
+    pins: int
+
+
+class FrameSequence:
+    """The frames of ``display_list`` on a machine, simulated by the engine of that name.
+
+    Raises ``InputError`` for a list that is too wide for the machine and an engine that cannot
+    run here, ``MachineError`` where the machine fails.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
+                 engine: str, memory_seed: int | None = None) -> None:
+        self._configuration = configuration
+        self._display_list = display_list
+        whole = frame_commands(configuration, display_list)
+        self._opcodes = [opcode_of(word) for word in whole]
+        self._start = self._opcodes.index(Opcode.FRAME_START)
+        words = [*whole, *whole[self._start:] * (FRAMES - 1),
+                 commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+        with engine_errors(engine):
+            self._run: EngineRun = make_engine(engine).run(Job(
+                configuration, commands=words,
+                responses=responses_owed(organisation_of(configuration), words),
+                memory_seed=memory_seed,
+                maximum_cycles=FRAMES * most_frame_clocks(configuration, len(words))))
+        answers = Answers(configuration, self._run)
+        self.simulation: Simulation = answers.frame(FRAMES - 1, reading=0, read_back=0)
+
+    def _cycles_of(self, kind: ResponseKind) -> list[int]:
+        return [cycle for found, _, cycle in self._run.responses if found == kind]
+
+    @cached_property
+    def _merged(self) -> list[int]:
+        """When each picture was complete."""
+        merges = organisation_of(self._configuration).merges
+        return self._cycles_of(ResponseKind.MERGED if merges else ResponseKind.FRAME_DRAWN)
+
+    def _taken(self, command: int) -> int:
+        """When the machine took a command of the last frame, by its place in the first one."""
+        assert self._run.accepted is not None
+        frame = len(self._opcodes) - self._start
+        return int(self._run.accepted[command + (FRAMES - 1) * frame])
+
+    @property
+    def shown_scans(self) -> list[Scan]:
+        """All since the first picture was shown."""
+        first = self._cycles_of(ResponseKind.FRAME_SHOWN)[0]
+        return [scan for scan in self._run.scans if scan.cycle > first]
+
+    @property
+    def clocks(self) -> Clocks:
+        drawn, merged = self.simulation.draw_cycles, self.simulation.merge_cycles
+        *_, before, last = self._merged
+        return Clocks(boot=self.simulation.boot_cycles, load=self._load(), draw=drawn,
+                      merge=0 if merged is None else merged - drawn, frame=last - before)
+
+    def _load(self) -> int | None:
+        if not self._configuration.list_words:
+            return None
+        accepted = self._run.accepted
+        assert accepted is not None
+        drawn = self._opcodes.index(Opcode.DRAW_LISTS)
+        loads = [place for place, opcode in enumerate(self._opcodes) if opcode == Opcode.LOAD]
+        return int(accepted[drawn] - accepted[loads[0]]) if loads else 0
+
+    def latency(self, golden: Picture) -> Latency | None:
+        """``golden`` is the picture at the machine's resolution; None where nothing is seen."""
+        triangle = int(golden.winner.max(initial=-1))
+        if triangle < 0:
+            return None
+        row, column = np.argwhere(golden.winner == triangle)[0].tolist()
+        _, _, x_shift, y_shift = organisation_of(self._configuration).resolution
+        x, y = column << x_shift, row << y_shift
+        taken = self._taken(self._command_of(triangle))
+        shown = self._cycles_of(ResponseKind.FRAME_SHOWN)[-1]
+        scan = next(scan.cycle for scan in self._run.scans if scan.cycle > shown)
+        pixels = y * self._configuration.timing.horizontal_total + x
+        return Latency(triangle, (x, y), merged=self._merged[-1] - taken,
+                       pins=scan + pixels * self._configuration.clocks_per_pixel - taken)
+
+    def _command_of(self, triangle: int) -> int:
+        """The place of the command that has a triangle drawn, in the first frame."""
+        configuration = self._configuration
+        if configuration.list_words:
+            return self._opcodes.index(Opcode.DRAW_LISTS)
+        organisation = organisation_of(configuration)
+        order = organisation.shares(self._display_list.triangles).host_order
+        place = np.empty_like(order)
+        place[order] = np.arange(len(order))
+        sent = place
+        if configuration.setup == "host":  # what the host's set-up leaves out is not sent
+            fitting = fitted(configuration, self._display_list)
+            boxes = outline(fitting, Grid.of(fitting, **organisation.resolution.shifts)).boxes
+            sent = place[boxes.primitive]
+        assert len(sent) == len(self._opcodes) - self._start - 2
+        return self._start + 1 + int(np.count_nonzero(sent < place[triangle]))

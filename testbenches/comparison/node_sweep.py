@@ -1,0 +1,195 @@
+"""Cages of one kind with more and more nodes: how much faster they are.
+
+A cage's smallest piece that repeats, ``PMMC`` of ``4x(PMMC)``, is taken as often as there are to
+be nodes; in a cage without merge cards it is an element with its units.  Each cage draws the scene
+as it is, and one that grows with the machine (``grown``).  The time of a frame is what drawing and
+merging take, without the wait for the next scan: by the cycle model of each cage, and simulated of
+the smaller ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+import numpy as np
+
+from ...golden.cycles.cycle_model import predict_cycles
+from ...golden.cycles.merge_clocks import merge_clocks
+from ...golden.merging.cage import merge_cage
+from ...golden.organisations.organisation_of import organisation_of
+from ...golden.planning.machine_plan import plan
+from ...golden.scene_display_list import SceneDisplayList
+from ...golden.specification.card_order import merge_card, parse_cards
+from ...golden.specification.configuration import MachineConfiguration, Packet
+from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
+from ..frames.setup_timing import setup_timing
+from .cage import Cage, CageJob, CageRun, Refused
+
+
+def repeated_piece(cards: str) -> str:
+    """The shortest order of cards of which ``cards`` is a repetition.
+
+    >>> repeated_piece("4x(PMMC)"), repeated_piece("PMMPMM"), repeated_piece("PMMPM")
+    ('PMMC', 'PMM', 'PMMPM')
+    """
+    spelled = parse_cards(cards)
+    return spelled[:(spelled + spelled).find(spelled, 1)]
+
+
+def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> DisplayList:
+    """``copies`` of a list one after the other, each wholly before those drawn earlier.
+
+    Each begins a packet further on, so that nodes get other triangles of it than of the copy
+    before: every node draws as much as one did of the list alone, all over the picture.
+    """
+    thickness = ((1 << display_list.depth_bits) - 1) // copies
+    step = 0 if packet == "contiguous" else packet
+
+    def copy(number: int) -> DisplayList:
+        turned = display_list.chosen(np.roll(np.arange(display_list.triangles), number * step))
+        return replace(turned, depth=turned.depth // copies + (copies - 1 - number) * thickness)
+
+    parts = [copy(number) for number in range(copies)]
+    return replace(display_list, **{
+        field: np.concatenate([getattr(part, field) for part in parts])
+        for field in ("position", "depth", "color")})
+
+
+@dataclass(frozen=True)
+class FrameTime:
+    """Clocks to draw a frame, and to merge it."""
+
+    draw: int
+    merge: int
+
+    @property
+    def total(self) -> int:
+        return self.draw + self.merge
+
+
+def predicted_time(configuration: MachineConfiguration, display_list: DisplayList,
+                   retained: bool) -> FrameTime:
+    """What the cycle model says."""
+    draw = predict_cycles(configuration, display_list, setup=setup_timing(configuration),
+                          retained=retained).cycles
+    merge = 0
+    if organisation_of(configuration).merges_after_drawing:
+        merge = sum(merge_clocks(configuration, merge_cage(configuration, display_list)[1]))
+    return FrameTime(round(draw), merge)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a point lies: ``piece`` repeated ``nodes`` times, and the scene it draws."""
+
+    piece: str
+    retained: bool
+    growing: bool
+    nodes: int
+
+    @property
+    def cage(self) -> Cage:
+        return Cage(f"{self.nodes}x({self.piece})" if self.nodes > 1 else self.piece,
+                    self.retained)
+
+    @property
+    def copies(self) -> int:
+        return self.nodes if self.growing else 1
+
+
+@dataclass(frozen=True)
+class Point:
+    """``simulated`` is None where only the model was asked, or the cage delivers none."""
+
+    place: Place
+    triangles: int
+    model: FrameTime
+    simulated: FrameTime | None
+
+
+@dataclass(frozen=True)
+class PointJob:
+    """A point that is to be found; ``simulate``: not by the model alone."""
+
+    place: Place
+    job: CageJob
+    simulate: bool
+
+    def run(self) -> tuple[Point, CageRun | Refused | None] | Refused:
+        place, cage = self.place, self.place.cage
+        options = cage.options(self.job.options)
+        try:
+            settled = options.for_plan()
+            listed = grown(self.job.scene.display_list, place.copies, options.packet or 1)
+            configuration = plan(listed, **settled).configuration
+        except InputError as error:
+            return Refused(cage, str(error))
+        model = predicted_time(configuration, listed, place.retained)
+        run = None
+        if self.simulate:
+            run = replace(self.job, cage=cage, scene=SceneDisplayList(
+                listed, self.job.scene.name)).run()
+        return Point(place, listed.triangles, model, time_of(run)), run
+
+
+def time_of(run: CageRun | Refused | None) -> FrameTime | None:
+    return FrameTime(run.clocks.draw, run.clocks.merge) if isinstance(run, CageRun) else None
+
+
+def places(cages: Sequence[Cage], nodes: Sequence[int]) -> Iterator[Place]:
+    """The points of all curves, each once: with one node nothing has grown yet."""
+    pieces: dict[tuple[str, bool], None] = {}
+    for cage in cages:
+        try:
+            pieces[repeated_piece(cage.cards), cage.retained] = None
+        except InputError:
+            continue  # said of the cage itself
+    for piece, retained in pieces:
+        for growing in (False, True):
+            for number in sorted(set(nodes)):
+                if not growing or number > 1:
+                    yield Place(piece, retained, growing, number)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Points with more and more nodes, of one kind of cage and one way to choose the scene."""
+
+    piece: str
+    retained: bool
+    growing: bool
+    points: Sequence[Point]
+
+    @property
+    def label(self) -> str:
+        piece = self.piece if merge_card(self.piece) else f"{self.piece}, one node"
+        return f"{piece}, retained" if self.retained else piece
+
+    def speed_ups(self) -> list[tuple[Point, float, float | None]]:
+        """Of each point by the model and simulated: triangles drawn a clock, against those of
+        the first point, simulated against simulated where that was."""
+        first = self.points[0]
+        return [(point, _rate(point.triangles, point.model) / _rate(first.triangles, first.model),
+                 None if point.simulated is None else _rate(point.triangles, point.simulated)
+                 / _rate(first.triangles, first.simulated or first.model))
+                for point in self.points]
+
+
+def _rate(triangles: int, time: FrameTime) -> float:
+    return max(triangles, 1) / max(time.total, 1)
+
+
+def curves_of(points: Sequence[Point]) -> list[Curve]:
+    """The curves, those of the scene as it is first; each scene that grows begins as it is."""
+
+    def key(point: Point) -> tuple[bool, str, bool]:
+        return point.place.growing, point.place.piece, point.place.retained
+
+    begin = [replace(point, place=replace(point.place, growing=True)) for point in points
+             if point.place.nodes == 1]
+    ordered = sorted([*points, *begin], key=lambda point: (*key(point), point.place.nodes))
+    return [Curve(piece, retained, growing, list(some))
+            for (growing, piece, retained), some in groupby(ordered, key)]
