@@ -71,7 +71,8 @@ class ChainMerge(MergeCard):
         with m.If(arriving.pixel.active & self.scan.drawn & nearest.higher_stays):
             m.d.sync += [leaving.pixel.rank.eq(self.scan.rank),
                          leaving.pixel.color.eq(self.scan.video)]
-        self._count(m, leaving.pixel)
+        # As they arrive: so all of a scan is counted before the host knows that the next one began.
+        self._count(m, arriving.pixel)
 
     def _count(self, m, pixel):
         """Pixels of the picture, from one vertical sync to the next."""
