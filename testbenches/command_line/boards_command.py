@@ -16,7 +16,8 @@ from .command_options import Several, Size
 from .progress import step_bar
 
 #: What can be measured (``fpga.boards``, which loads Amaranth and so is not asked here).
-BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports", "setup-fast",
+BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports",
+               "unit-of-chain", "unit-of-tree", "chain-merge", "tree-merge", "setup-fast",
                "setup-small")
 
 
