@@ -9,8 +9,13 @@ from typing import Any
 
 import click
 
-from ...golden.specification.configuration import MAXIMUM_NODES
-from ..comparison.compare_cages import DEFAULT_CARDS, DEFAULT_SIMULATE, compare_cages
+from ...golden.specification.card_order import MAXIMUM_NODES
+from ..comparison.compare_cages import (
+    DEFAULT_CARDS,
+    DEFAULT_SIMULATE,
+    compare_cages,
+    expected_steps,
+)
 from ..comparison.comparison_facts import comparison_facts
 from ..comparison.comparison_table import comparison_table, comparison_text
 from ..engines.choose_engine import AUTO, ENGINES
@@ -40,16 +45,17 @@ from .progress import step_bar
               show_default=True, metavar="DIR", help="Folder of the report.")
 @click.pass_obj
 def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
-                    nodes: tuple[int, ...] | None, as_json: bool, **options: Any) -> None:
+                    retain: bool | None, nodes: tuple[int, ...] | None, as_json: bool,
+                    **options: Any) -> None:
     """Draw SCENE on several cages and compare what they show and what it costs.
 
-    One element sees every triangle, or nodes each draw a share of them and merge their pictures, in
-    a chain (C) while the screen is scanned or in a tree (T) when drawing is done.  Every pixel,
-    every fragment and every pixel sent between nodes is compared with the golden model.  For each
-    cage: clocks to load, draw and merge, the latency from the last triangle to the screen, the
-    busiest node's share, what goes over the busiest link, memory.  All other options are for all
-    cages.  The report goes to DIR: open comparison.html.  Cages are simulated at the same time, on
-    all cores.
+    All elements of one node see every triangle; nodes each draw a share of them and merge their
+    pictures, in a chain (C) while the screen is scanned, or in a tree (T) when drawing is done.
+    Every pixel, every fragment and every pixel sent between nodes is compared with the golden
+    model.  For each cage: clocks to load, draw and merge, the latency from the last triangle to the
+    screen, the busiest node's share, what goes over the busiest link, memory.  All options but
+    --cards are for all cages, which are simulated at the same time, on all cores.  The report goes
+    to DIR: open comparison.html.
 
     \b
     Examples:
@@ -64,9 +70,10 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
     Exit status: 0 every picture and every count as golden, 1 otherwise, or a cage delivers no
     picture, 2 the input or the system is at fault, or no cage can be built for the scene.
     """
-    with step_bar(1) as step:
-        comparison = compare_cages(scene, cards or DEFAULT_CARDS, nodes=nodes or (), step=step,
-                                   command_line=command_line, **options)
+    which: dict[str, Any] = {"cards": cards or DEFAULT_CARDS, "retain": retain,
+                             "nodes": nodes or ()}
+    with step_bar(expected_steps(**which)) as step:
+        comparison = compare_cages(scene, step=step, command_line=command_line, **which, **options)
     for warning in comparison.warnings:
         warn(warning)
     if as_json:

@@ -67,6 +67,19 @@ class CompareOptions:
                 found[Cage(cards, retained)] = None
         return list(found)
 
+    def points(self) -> list[Place]:
+        """Of the sweep."""
+        return list(places(self.cages(), self.nodes))
+
+
+def expected_steps(**options: Any) -> int:
+    """How many cages there are, those of the sweep as well: for a progress bar.
+
+    ``options`` as in ``compare_cages``.
+    """
+    asked = CompareOptions(MachineOptions(), **options)
+    return len(asked.cages()) + len(asked.points())
+
 
 def _has_nodes(cards: str) -> bool:
     try:
@@ -83,7 +96,7 @@ class CageComparison:
     ``refused``  the other cages, and those of the sweep that there cannot be
     ``curves``   of the sweep
     ``wrong``    simulated cages of the sweep that are not as the golden model has them
-    ``report``   where ``report.html`` is, if it was written
+    ``report``   where ``comparison.html`` is, if it was written
     """
 
     scene: SceneDisplayList
@@ -187,8 +200,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     make_engine(options.engine)  # one that cannot run is no fault of a cage's
     loaded = load_scene(scene, options.machine)
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
-    cages = options.cages()
-    points = list(places(cages, options.nodes))
+    cages, points = options.cages(), options.points()
     known = {(parse_cards(cage.cards), cage.retained) for cage in cages if _parses(cage)}
     jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells)
                                       for cage in cages]

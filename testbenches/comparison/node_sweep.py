@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...golden.cycles.cycle_model import predict_cycles
 from ...golden.cycles.merge_clocks import merge_clocks
@@ -53,9 +55,12 @@ def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> Display
         return replace(turned, depth=turned.depth // copies + (copies - 1 - number) * thickness)
 
     parts = [copy(number) for number in range(copies)]
-    return replace(display_list, **{
-        field: np.concatenate([getattr(part, field) for part in parts])
-        for field in ("position", "depth", "color")})
+
+    def together(field: str) -> NDArray[Any]:
+        return np.concatenate([getattr(part, field) for part in parts])
+
+    return replace(display_list, position=together("position"), depth=together("depth"),
+                   color=together("color"))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from cardcage.hdl.memory_unit.memory_unit import MemoryUnit
 from cardcage.hdl.nodes.chain_merge import ChainMerge
 from cardcage.hdl.processing_element.processing_element import ProcessingElement
 from cardcage.hdl.video.video_scan_generator import VideoScanGenerator
-from cardcage.testbenches.comparison.compare_cages import CompareOptions
+from cardcage.testbenches.comparison.compare_cages import CompareOptions, expected_steps
 from cardcage.testbenches.engines.engine import Scan
 from cardcage.testbenches.export.cell_count import Cells
 from cardcage.testbenches.machine_options import MachineOptions
@@ -36,6 +36,14 @@ def test_which_cages():
     assert labels(cards=("2x(PMC)", "2x(PMC)"), retain=False) == ["2x(PMC)"]
     assert len(labels()) == 5
     assert labels(cards=("2x(PMC", "PMQ")) == ["2x(PMC", "PMQ"]  # said when they are planned
+
+
+def test_every_step_is_told(small):
+    """As the work begins, and as each cage is done."""
+    told = []
+    small(("2x(PM)", "2x(PMC)"), nodes=(1, 2), simulate=0, step=told.append)
+    assert set(told) == {"12 cages, 1 at a time"}
+    assert len(told) == 1 + expected_steps(cards=("2x(PM)", "2x(PMC)"), nodes=(1, 2)) == 13
 
 
 def test_identical_on_all(small):
