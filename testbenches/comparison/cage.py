@@ -71,7 +71,7 @@ class CageRun:
 
     ``traffic``      as the machine counted its pixels
     ``nodes``        left to right
-    ``memories``     every one there is
+    ``memories``     every one there is, if they were asked for
     ``cells``        None where they were not counted
     ``differences``  a line each: what is not as the golden model has it
     ``warnings``     a line each
@@ -106,13 +106,14 @@ class CageRun:
 
 @dataclass(frozen=True)
 class CageJob:
-    """A cage that is to draw ``scene``; ``cells``: count them, too."""
+    """A cage that is to draw ``scene``; ``memories``: list them, ``cells``: count them, too."""
 
     cage: Cage
     scene: SceneDisplayList
     options: MachineOptions
     engine: str
     random_memory: int | None = None
+    memories: bool = True
     cells: bool = False
 
     def run(self) -> CageRun | Refused:
@@ -137,7 +138,8 @@ class CageJob:
             frames.latency(comparison.golden), nodes,
             replace(golden, sends=[send._replace(pixels=nodes[send.sender].sent)
                                    for send in golden.sends]),
-            memories_of(configuration), cells_of(configuration) if self.cells else None,
+            memories_of(configuration) if self.memories else [],
+            cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *_count_differences(nodes)],
             [*resolution_warnings(configuration), *simulation.notes])
 

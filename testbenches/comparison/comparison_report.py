@@ -20,6 +20,9 @@ from .comparison_table import figures, headline, tables
 #: Everything that ``write_comparison`` writes.
 COMPARISON_FILES = ("comparison.html", "comparison.json", "comparison.png")
 
+#: About as wide as a picture is on the page: of a larger one a lone red pixel would be lost.
+PICTURE_PIXELS = 240
+
 
 def write_comparison(comparison: CageComparison, folder: Path) -> None:
     """Write ``COMPARISON_FILES`` to ``folder``, which exists."""
@@ -48,7 +51,6 @@ def comparison_page(comparison: CageComparison, facts: dict[str, Any]) -> str:
         chart=figures_chart(comparison.runs) if comparison.runs else "",
         sweep_chart=sweep_chart(comparison.curves) if comparison.curves else "",
         sweep_tables=tables(comparison)[bool(comparison.runs):],
-        nothing_sent=all(run.configuration.merge is None for run in comparison.runs),
     )
 
 
@@ -60,7 +62,8 @@ def _pictures(comparison: CageComparison) -> list[tuple[str, str]]:
         shown = group[0].comparison
         where = ", ".join(run.cage.label for run in group)
         if not shown.equal:
-            found.append((data_uri(different_pixels(shown)), f"{where}: grey equal, red different"))
+            different = different_pixels(shown, reach=max(golden.shape) // PICTURE_PIXELS)
+            found.append((data_uri(different), f"{where}: grey equal, red different"))
         elif not np.array_equal(shown.expected, golden):
             found.append((data_uri(shown.expected), f"on {where}"))
     return found

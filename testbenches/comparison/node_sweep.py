@@ -135,7 +135,7 @@ class PointJob:
         model = predicted_time(configuration, listed, place.retained)
         run = None
         if self.simulate:
-            run = replace(self.job, cage=cage, scene=SceneDisplayList(
+            run = replace(self.job, cage=cage, memories=False, scene=SceneDisplayList(
                 listed, self.job.scene.name)).run()
         return Point(place, listed.triangles, model, time_of(run)), run
 
