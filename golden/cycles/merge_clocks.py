@@ -25,7 +25,7 @@ MERGE_CLOCKS = 1
 #: From the start of a step to the next one, were the receiver the sender's own: to find the first
 #: word that was drawn, to read it, and to see that all is written.  A node that has drawn nothing
 #: is some clocks quicker.
-STEP_CLOCKS = 18
+STEP_CLOCKS = 19
 
 #: From a node to the next one on the way to the receiver.
 HOP_CLOCKS = 1

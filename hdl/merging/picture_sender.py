@@ -24,7 +24,7 @@ class PictureSender(wiring.Component):
 
     Latency: ``latency`` clocks from ``start`` to the first pixel, if it lies among the first words
     of the map's summary.  Throughput: a pixel a clock; a listing takes as long as ``DrawnMap`` says
-    and two clocks for the last one to come out.
+    and three clocks for the last one to come out.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class PictureSender(wiring.Component):
     Raises ``ValueError`` for a number out of range.
     """
 
-    latency = DrawnMap.latency + 2
+    latency = DrawnMap.latency + 3
 
     def __init__(self, *, words: int, depth_bits: int):
         if depth_bits < 1:
@@ -84,6 +84,8 @@ class PictureSender(wiring.Component):
         m = Module()
         m.submodules.map = drawn = self.map
         m.submodules.waiting = waiting = self._waiting
+        # Whether the RAM is free is known late, and the map's stages are many.
+        m.submodules.listed = listed = fifo.SyncFIFO(width=len(self.write_address), depth=2)
         answering = Signal()  # the word that was read is there in this clock only
         address = Signal.like(self.write_address)
         room = Signal()
@@ -97,16 +99,19 @@ class PictureSender(wiring.Component):
 
             # Once there is room there is until a word is read.
             room.eq(waiting.level + answering < WAITING),
-            self.reads.valid.eq(drawn.addresses.valid & room),
-            self.reads.payload.eq(drawn.addresses.payload),
-            drawn.addresses.ready.eq(self.reads.ready & room),
+            self.reads.valid.eq(listed.r_rdy & room),
+            self.reads.payload.eq(listed.r_data),
+            listed.r_en.eq(self.reads.ready & room),
+            listed.w_data.eq(drawn.addresses.payload),
+            listed.w_en.eq(drawn.addresses.valid),
+            drawn.addresses.ready.eq(listed.w_rdy),
 
             waiting.w_en.eq(answering & self.current),
             waiting.w_data.eq(Cat(address, self.depth, self.color)),
             self.pixels.valid.eq(waiting.r_rdy),
             Value.cast(self.pixels.payload).eq(waiting.r_data),
             waiting.r_en.eq(self.pixels.ready),
-            self.more.eq(drawn.listing | answering | (waiting.level > 1)),
+            self.more.eq(drawn.listing | listed.r_rdy | answering | (waiting.level > 1)),
         ]
         m.d.sync += [
             answering.eq(self.reads.valid & self.reads.ready),
