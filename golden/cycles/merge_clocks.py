@@ -44,4 +44,7 @@ def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[
 def _send_clocks(configuration: MachineConfiguration, send: Send) -> float:
     if configuration.memory_ports == 2:
         return send.pixels
-    return (send.pixels + send.kept) / (1 - scan_share(configuration, send.receiver))
+    # Pixels come from two units in turn, and are written to two while those of both have any.
+    ports = min(2, configuration.units)
+    clocks = max(send.pixels, (send.pixels + send.kept) / ports)
+    return clocks / (1 - scan_share(configuration, send.receiver))

@@ -11,10 +11,12 @@ __all__ = ["NodeSender"]
 
 
 class NodeSender(wiring.Component):
-    """Has all units of a node list at once, and takes one after the other, by their number.
+    """Has all units of a node list at once, and takes two at a time, by their numbers.
 
-    So only the listing of the first unit is waited for: the pixels of the others are ready
-    when it is their turn, and a unit that has none takes a clock.
+    So only the listing of the first ones is waited for: the pixels of the others are ready
+    when it is their turn, and a unit that has none takes a clock.  Of the two a pixel comes from
+    each in turn: they are received by units of the same numbers, and where these have one port
+    one reads while the other writes (``OnePortDepthTest``).
 
     Latency: none from a unit's pixel to ``words``.  Throughput: a pixel a clock, from unit to unit.
 
@@ -28,7 +30,7 @@ class NodeSender(wiring.Component):
         Send; ignored while sending.  Nothing is written until all is sent.
     units: Out(SendLines)
     words: Out(stream of tree_word_layout)
-        The pixels unit by unit, in ascending order of their addresses, and ``last`` after them.
+        The pixels of each unit in ascending order of their addresses, and ``last`` after all.
     """
 
     def __init__(self, *, id_bits: int, address_bits: int, depth_bits: int):
@@ -46,11 +48,16 @@ class NodeSender(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         units, word = self.units, self.words.payload
-        following = Signal.like(units.unit)
+        following = Signal(self.id_bits + 1)  # the first of the next two
+        finished = Signal(2)
+        current = units.unit[0]
+        ends, other_left = Signal(), Signal()
         m.d.comb += [
             word.pixel.unit.eq(units.unit),
             *(word.pixel[name].eq(units.pixel[name]) for name in units.pixel.shape().members),
-            following.eq(units.unit + 1),
+            following.eq((units.unit | 1) + 1),
+            ends.eq(~units.more & (~units.valid | self.words.ready)),
+            other_left.eq(((units.unit ^ 1) < self.total) & ~finished.bit_select(~current, 1)),
         ]
         with m.FSM():
             with m.State("IDLE"):
@@ -62,9 +69,11 @@ class NodeSender(wiring.Component):
                 m.next = "UNITS"
             with m.State("UNITS"):
                 m.d.comb += [self.words.valid.eq(units.valid), units.ready.eq(self.words.ready)]
-                with m.If(~units.more & (~units.valid | self.words.ready)):
-                    m.d.sync += units.unit.eq(following)
-                    with m.If(following == self.total):
+                with m.If(other_left & (ends | (self.words.valid & self.words.ready))):
+                    m.d.sync += [current.eq(~current), finished.bit_select(current, 1).eq(ends)]
+                with m.Elif(ends):
+                    m.d.sync += [units.unit.eq(following), finished.eq(0)]
+                    with m.If(following >= self.total):
                         m.next = "LAST"
             with m.State("LAST"):
                 m.d.comb += [self.words.valid.eq(1), word.last.eq(1)]

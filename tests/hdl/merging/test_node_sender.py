@@ -1,10 +1,10 @@
-"""The units of a node one after the other, against units in software."""
+"""The units of a node, two at a time and these in turn, against units in software."""
 
 import random
 
 import pytest
 from hdl_bench.bench import Drive, simulate
-from hdl_bench.sending_units import Units, random_pixels
+from hdl_bench.sending_units import Units, in_turn, random_pixels
 from hdl_bench.streams import Sink, no_pause, pauses
 
 from cardcage.hdl.merging.node_sender import NodeSender
@@ -16,7 +16,7 @@ def run(pixels, *, pause=no_pause, begin=0, **waits):
     dut = NodeSender(**BITS)
     units = Units(dut.units, pixels, **waits)
     wanted = [(0, unit, pixel["address"], pixel["depth"], pixel["color"])
-              for unit, of_unit in enumerate(pixels) for pixel in of_unit]
+              for unit, pixel in in_turn(pixels)]
     sink = Sink(dut.words, len(wanted) + 1, pause)
 
     def start(ctx, clock):

@@ -5,7 +5,7 @@ import random
 import pytest
 from hdl_bench.bench import Agent, simulate
 from hdl_bench.pictures import small_machine
-from hdl_bench.sending_units import Units, random_pixels
+from hdl_bench.sending_units import Units, in_turn, random_pixels
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
 from cardcage.golden.specification.commands import ResponseKind
@@ -103,7 +103,7 @@ def of_the_right(seed):
 def test_a_sender_sends_its_pixels_and_counts_them(number, step, stall):
     pixels = all_units(number)
     left, received, sent = run(number, step, pixels=pixels, stall=stall)
-    expected = [{"unit": unit, **pixel} for unit, own in enumerate(pixels) for pixel in own]
+    expected = [{"unit": unit, **pixel} for unit, pixel in in_turn(pixels)]
     *before, last = left.items
     assert values([word.pixel for word in before]) == values(expected)
     assert last.last and not any(word.last for word in before)

@@ -1,5 +1,7 @@
 """Memory units that send what was drawn into them, in software."""
 
+from itertools import zip_longest
+
 from .bench import Agent
 from .streams import no_pause
 
@@ -47,3 +49,10 @@ def random_pixels(pick, most, *, address_bits=5, depth_bits=9):
     """Up to ``most`` of one unit."""
     return [{"address": pick.getrandbits(address_bits), "depth": pick.getrandbits(depth_bits),
              "color": pick.getrandbits(24)} for _ in range(pick.randint(0, most))]
+
+
+def in_turn(pixels):
+    """(unit, pixel) of all, as a node sends them: two units at a time, and of these in turn."""
+    own = [[(unit, pixel) for pixel in of_unit] for unit, of_unit in enumerate(pixels)]
+    return [sent for first in range(0, len(own), 2) for turn in zip_longest(*own[first:first + 2])
+            for sent in turn if sent is not None]
