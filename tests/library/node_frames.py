@@ -74,8 +74,10 @@ def pictures(width, height, *, flat=False):
 def immediate(configuration, display_list, *, prepared=False):
     """The commands of a frame whose triangles are sent one by one, whether nodes have lists or
     not; ``prepared`` by the host, whatever the machine's set-up."""
-    return frame_commands(replace(configuration, list_words=0), display_list,
-                          configuration.fraction_bits if prepared else None)
+    if prepared:  # which lists of vertices do not take
+        assert configuration.setup == "hardware"
+        return frame_commands(configuration, display_list, configuration.fraction_bits)
+    return frame_commands(replace(configuration, list_words=0), display_list)
 
 
 def loads(configuration, display_list):
