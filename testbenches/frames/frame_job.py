@@ -30,11 +30,13 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     machine reports.  With ``fraction_bits``, fewer than the machine's, the host does it with planes
     rounded to these: the machine then draws the picture of one that has no more, value for value
     and clock for clock, if its words have the integer bits for the greater error.  Raises
-    ``InputError`` for a list that is too wide for the machine.
+    ``InputError`` for a list that is too wide for the machine.  Lists of a machine that sets up
+    take vertices alone, so what the host has prepared goes round them.
     """
     triangles = _triangle_words(configuration, display_list, fraction_bits)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
-    if not configuration.list_words:
+    vertices = configuration.setup == "hardware"
+    if not configuration.list_words or (vertices and fraction_bits is not None):
         return [start, *triangles, end]
     clear, draw = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.DRAW_LISTS))
     loads = [commands.with_opcode(word, Opcode.LOAD) for word in triangles]

@@ -81,7 +81,7 @@ def run(timing, period, cards, clocks):
 
 
 @pytest.mark.parametrize("name", TIMINGS)
-@pytest.mark.parametrize("cards", [1, 2, 5])
+@pytest.mark.parametrize("cards", [1, 4])
 def test_pins_as_many_clocks_later_as_there_are_cards_less_one(name, cards):
     """Sync and picture together; addresses and start at the same time as ever."""
     timing, period = TIMINGS[name]

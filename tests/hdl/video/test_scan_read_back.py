@@ -84,15 +84,14 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@pytest.mark.parametrize("seed", range(2))
-def test_each_pixel_once_and_in_order(name, seed):
+def test_each_pixel_once_and_in_order(name):
     """A host that waits now and then; the picture stays the same from scan to scan."""
     configuration = MACHINES[name]
     pixels = configuration.width * configuration.height
     picture = [37 * place % 251 for place in range(pixels)]
-    start = 17 * (seed + 1) % configuration.cycles_per_scan
+    start = 17 % configuration.cycles_per_scan
     screen, sink = run(configuration, lambda scan, place: picture[place], [start],
-                       pauses(f"depths {name} {seed}"))
+                       pauses(f"depths {name}"))
     assert sink.items == picture
     [(_, taken)] = screen.done
     assert taken == pixels
@@ -111,7 +110,7 @@ def test_the_next_scan_two_clocks_behind_its_pixels(name):
     assert sink.clocks[-1] < done <= sink.clocks[-1] + 2
 
 
-@pytest.mark.parametrize("clocks", [5, 9, 40])
+@pytest.mark.parametrize("clocks", [5, 20])
 def test_a_slower_host_takes_more_scans(clocks):
     """What finds the queue full comes with a later scan, after what came before."""
     configuration = machine(13, 11)

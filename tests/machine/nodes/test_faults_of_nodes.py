@@ -114,9 +114,7 @@ def cage(cards, **options):
 
 @pytest.mark.parametrize(("cards", "nodes", "fault"), [
     ("PMMMMC PMMC", [4, 2], Fault.NODES_DIFFER),
-    ("PMMT PMMMMT", [2, 4], Fault.NODES_DIFFER),
     ("PMMT PMMT PMT", [2, 2, 1], Fault.NODES_DIFFER),
-    ("PMMC PMMMC", [2, 3], Fault.UNITS_UNSUPPORTED),
     ("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED),
     ("PMMC PC PMMC", [2, 0, 2], Fault.UNITS_UNSUPPORTED),
 ])
@@ -141,7 +139,6 @@ def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
 
 @pytest.mark.parametrize(("cards", "resolution"), [
     ("PMMMMC PMMMMC", (8, 8)),  # of five nodes
-    ("PMMMMT", (8, 8)),
     ("PMMT PPMMT PMMPT", (8, 4)),  # and two units of each
     ("PMC PMC PMC", (4, 4)),
 ])

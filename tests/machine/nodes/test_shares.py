@@ -78,7 +78,6 @@ def test_one_picture_after_another(name):
 CAGES = {
     "one node": ("PMMC", {"list_words": 10}),
     "two, squares": ("2x(PMPMC)", {"block": 2, "packet": 1}),
-    "two, skewed": ("2x(PMMC)", {"skew": True, "packet": 1}),
     "three, coarser": ("3x(PMC)", {"words": 32, "packet": 2, "memory_ports": 2}),
 }
 
