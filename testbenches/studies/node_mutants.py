@@ -159,6 +159,11 @@ def main(patience: float, words: tuple[str, ...]) -> None:
 
     WORDS: only those of which one is in the file or in what is wrong.  Exit status 1 where one
     survives.
+
+    \b
+    Examples:
+      python -m testbenches.studies.node_mutants
+      python -m testbenches.studies.node_mutants gate list
     """
     chosen = [thought for thought in THOUGHTS
               if not words or any(word in thought.file + thought.what for word in words)]

@@ -1,7 +1,5 @@
 """How fast nodes draw: shares sent one after another and lists kept in the nodes, with the bounds.
 
-    python -m testbenches.studies.node_speed [--merge C|T] [--json]
-
 Sixteen nodes of one processing element and two memory units with two ports, 512 by 512 pixels,
 triangles set up by the host; ``random_bbox16`` has its list sixteen times, so that a run of it for
 each node is the list once.  Every picture is compared with the golden one.
@@ -98,7 +96,13 @@ def rows(merge: str, cases: tuple[str, ...]) -> Iterator[Row]:
               default=list(CASES), show_default=True)
 @click.option("--json", "as_json", is_flag=True)
 def main(merge: str, cases: tuple[str, ...], as_json: bool) -> None:
-    """Measure sixteen nodes."""
+    """Measure sixteen nodes.
+
+    \b
+    Examples:
+      python -m testbenches.studies.node_speed
+      python -m testbenches.studies.node_speed --merge T --case mesh --json
+    """
     found = []
     for row in rows(merge, cases):
         found.append(row)

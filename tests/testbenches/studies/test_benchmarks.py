@@ -11,18 +11,32 @@ from click.testing import CliRunner
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
 from cardcage.testbenches.support.cache import ENVIRONMENT_VARIABLE
-from testbenches.studies import golden_benchmark, model_building, word_fuzz
+from testbenches.studies import golden_benchmark, merge_traffic, model_building, word_fuzz
 
 ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark",
-                                  "model_building", "mutation_campaign", "word_fuzz"])
+                                  "merge_traffic", "model_building", "mutation_campaign",
+                                  "node_mutants", "node_speed", "word_fuzz"])
 def test_a_study_runs_from_a_clone(name):
     done = subprocess.run([sys.executable, "-m", f"testbenches.studies.{name}", "--help"],
                           cwd=ROOT, capture_output=True, text=True, timeout=100)
     assert done.returncode == 0, done.stderr
     assert f"python -m testbenches.studies.{name}" in done.stdout
+
+
+def test_what_nodes_send():
+    """Of two nodes one sends what it has drawn, or each of them half of it."""
+    done = CliRunner().invoke(merge_traffic.main, ["--case", "random_bbox16", "--nodes", "2"])
+    assert done.exit_code == 0, done.output
+    rows = [line.split() for line in done.output.splitlines()[2:]]
+    (tree, *sent), (binary, swap, *halves) = rows
+    assert (tree, binary, swap) == ("tree", "binary", "swap")
+    longest, busiest, in_all, only = (int(pixels.replace(",", "")) for pixels in sent)
+    assert longest == busiest == in_all == only > 0
+    # Both send the half that they give away.
+    assert 0 < int(halves[0].replace(",", "")) < longest
 
 
 def test_golden_benchmark():
