@@ -46,7 +46,7 @@ def main(case: str, nodes: int, packet: int | str, times: int) -> None:
     \b
     Examples:
       python -m testbenches.studies.merge_traffic
-      python -m testbenches.studies.merge_traffic --case random_bbox16 --times 16 --packet contiguous
+      python -m testbenches.studies.merge_traffic --case random_bbox16 --times 16 --nodes 8
     """
     click.echo(table(case, nodes, packet, times).text())
 
