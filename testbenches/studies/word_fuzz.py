@@ -35,6 +35,8 @@ MACHINES: dict[str, dict[str, Any]] = {
                   "allow_orphans": True},
     "set-up": {"cards": "PMPM", "width": 8, "height": 8, "setup": "hardware",
                "setup_interval": 8},
+    "chain": {"cards": "2x(PMC)", "width": 6, "height": 5},
+    "tree": {"cards": "2x(PMT)", "width": 8, "height": 4, "shading": "flat"},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
     "larger": {"cards": "PMMPMM", "width": 48, "height": 40},
