@@ -55,10 +55,13 @@ def plan_scene(scene: str | Path, options: MachineOptions | None = None,
     options = options or MachineOptions()
     if cycles is not None and options.cards is not None:
         raise InputError("--cycles: chooses the cards itself; leave out --cards")
+    if cycles is not None and (options.retain or options.list_words is not None):
+        raise InputError("--cycles: chooses cards of one node, which keeps no list; leave out "
+                         "--retain and --list-words")
     loaded = load_scene(scene, options)
     if cycles is not None:
         fields = {name: value for name, value in options.for_plan().items()
-                  if name not in ("cards", "max_error")}
+                  if name not in ("cards", "max_error", "retain")}
         options = replace(options, cards=cards_for_cycles(loaded.display_list, cycles, **fields))
     planned = plan(loaded.display_list, **options.for_plan())
     return ScenePlan(

@@ -156,6 +156,8 @@ def test_max_error_without_a_scene():
     (["--cycles", "0"], "--cycles"),
     (["--cycles", "10"], "too few"),
     (["--cycles", "99999", "--cards", "PM"], "leave out --cards"),
+    (["--cycles", "99999", "--retain"], "leave out --retain"),
+    (["--cycles", "99999", "--list-words", "9"], "--list-words"),
 ])
 def test_refused(arguments, words):
     assert words in refusal(run, *arguments)
