@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ....golden.planning.machine_plan import triangle_bits
+from ....golden.specification.card_order import TREE_MERGE
 from .scene_plan import CYCLE_ACCURACY, ScenePlan
 
 _COLUMNS = ("", "plan", "full", "saves", "because")
@@ -54,10 +55,11 @@ def _summary(planned: ScenePlan) -> list[str]:
     plan, machine = planned.plan, planned.plan.configuration
     chosen = (f"chosen for {planned.budget:,}" if planned.budget is not None else
               "as given")
+    takes = "a frame takes" if machine.merge != TREE_MERGE else "to draw, not to merge, takes"
     lines = [
         f"each triangle broadcast: {triangle_bits(machine):,} bits instead of "
         f"{triangle_bits(plan.full):,} (saves counts these, each line by itself)",
-        f"cards: {machine.cards}, {chosen}; a frame takes about {planned.estimate.total:,} cycles "
+        f"cards: {machine.cards}, {chosen}; {takes} about {planned.estimate.total:,} cycles "
         f"(estimated, within {100 * CYCLE_ACCURACY:.0f} % of those simulated in the tests)",
     ]
     if planned.cells is not None:
