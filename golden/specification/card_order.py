@@ -95,24 +95,24 @@ def check_cards(cards: str) -> None:
     """Raise ``InputError`` unless in every node each memory unit has a processing element to its
     left, and all nodes have one number of units, a power of two."""
     nodes = node_cards(cards)
-    for node in nodes:
-        _check_node(node)
+    for number, node in enumerate(nodes):
+        _check_node(node, repr(node) if node == cards else f"node {number}, {node!r},")
     units = sorted({node.count(MEMORY_UNIT) for node in nodes})
     if len(units) > 1:
         raise InputError(f"cards: nodes of {' and '.join(map(str, units))} memory units in one "
                          "cage; give all nodes as many")
 
 
-def _check_node(cards: str) -> None:
-    """``check_cards`` of one node."""
+def _check_node(cards: str, called: str) -> None:
+    """``check_cards`` of one node, which messages call so."""
     if PROCESSING_ELEMENT not in cards:
-        raise InputError(f"cards: {cards!r} has no processing element; add a P to the left")
+        raise InputError(f"cards: {called} has no processing element; add a P to the left")
     if MEMORY_UNIT not in cards:
-        raise InputError(f"cards: {cards!r} has no memory unit; add an M to the right of a P")
+        raise InputError(f"cards: {called} has no memory unit; add an M to the right of a P")
     if cards[0] == MEMORY_UNIT:
         left = len(cards) - len(cards.lstrip(MEMORY_UNIT))
-        raise InputError(f"cards: {cards!r}: {left} memory unit(s) left of the first processing "
-                         "element belong to nobody; start with a P")
+        raise InputError(f"cards: {called} has {left} memory unit(s) left of the first processing "
+                         "element, which belong to nobody; start with a P")
     units = cards.count(MEMORY_UNIT)
     if units & (units - 1):
         lower = 1 << (units.bit_length() - 1)
