@@ -72,6 +72,11 @@ class Fault(IntEnum):
     LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
 
 
+def fault_text(value: int) -> str:
+    """The value of an ``ERROR`` response as people read it: number and, where it has one, name."""
+    return f"{value} ({Fault(value).name})" if value in list(Fault) else str(value)
+
+
 RESPONSE_KIND_BITS = 8
 RESPONSE_VALUE_BITS = 32
 

@@ -10,6 +10,7 @@ from ...golden.specification.commands import (
     RESPONSE_VALUE_BITS,
     Opcode,
     ResponseKind,
+    fault_text,
     opcode_of,
 )
 from ...golden.specification.configuration import MachineConfiguration
@@ -67,6 +68,8 @@ class ConversationCheck:
             raise ProtocolError(f"{got}, and none is due")
         expected = self._expected[self._received]
         if kind != expected.kind:
+            if kind == ResponseKind.ERROR:
+                got += f": the machine reports fault {fault_text(value)}"
             raise ProtocolError(f"{got}; {expected.kind.name} is due")
         if expected.command >= self._sent:
             raise ProtocolError(f"{got}, before its command {expected.command} was taken")

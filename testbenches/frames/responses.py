@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.organisations.organisation_of import organisation_of
-from ...golden.specification.commands import ResponseKind, response_fields
+from ...golden.specification.commands import ResponseKind, fault_text, response_fields
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import EngineRun, Scan
@@ -99,7 +99,7 @@ class Answers:
             self._values[kind].append(value)
             self._cycles[kind].append(cycle)
         for fault in self._fields(ResponseKind.ERROR):
-            raise MachineError(f"the machine reports fault {fault['fault']}")
+            raise MachineError(f"the machine reports fault {fault_text(fault['fault'])}")
         [picture] = self._fields(ResponseKind.PICTURE)
         self._resolution = picture["width"], picture["height"]
         if self._resolution != organisation.resolution[:2]:

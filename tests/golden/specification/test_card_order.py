@@ -119,7 +119,7 @@ def test_nodes_that_are_not_ended_alike(cards, message):
     ("PMMTPMTPMT", "^cards: nodes of 1 and 2 memory units in one cage; give all nodes as many$"),
     ("CPMC", "^cards: node 0, '', has no processing element; add a P to the left$"),
     ("PMCMC", "^cards: node 1, 'M', has no processing element; add a P to the left$"),
-    ("PMMCMPMC", r"^cards: node 1, 'MPM', has 1 memory unit\(s\) left of the first processing element"),
+    ("PMMCMPMC", r"^cards: node 1, 'MPM', has 1 memory unit\(s\) left of the first"),
     ("PMCPC", "^cards: node 1, 'P', has no memory unit; add an M to the right of a P$"),
     ("2x(PMMMC)", "^cards: 3 memory units are not supported yet; .* such as 2 or 4$"),
 ])

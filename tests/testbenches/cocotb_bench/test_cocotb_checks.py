@@ -148,6 +148,8 @@ def changed(place, word):
     (changed(4, (ResponseKind.BOOTED, 101)), "BOOTED cannot be that large"),
     ([*TALK[:7], (ResponseKind.FRAME_DRAWN, 20)], "before its command 2 was taken"),
     (changed(8, (ResponseKind.FRAME_SHOWN, 0)), "FRAME_DRAWN is due"),
+    (changed(8, (ResponseKind.ERROR, 4)), r"fault 4 \(LIST_FULL\); FRAME_DRAWN is due"),
+    (changed(8, (ResponseKind.ERROR, 77)), "fault 77; FRAME_DRAWN is due"),
     (changed(9, (ResponseKind.FRAME_SHOWN, 99)), "FRAME_SHOWN cannot be that large"),
     (changed(16, (ResponseKind.ERROR, 2)), "ERROR must be 0x1"),
     ([*TALK, (ResponseKind.ERROR, 1)], "none is due"),

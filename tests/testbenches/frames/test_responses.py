@@ -53,7 +53,7 @@ def test_frames_one_after_another():
 
 
 def test_a_fault_and_a_wrong_resolution():
-    with pytest.raises(MachineError, match="fault 2"):
+    with pytest.raises(MachineError, match=r"fault 2 \(UNITS_UNSUPPORTED\)"):
         Answers(CAGE, run_of([*BOOT[:3], (ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)]))
     halved = (ResponseKind.PICTURE, response_value(ResponseKind.PICTURE, width=4, height=2))
     with pytest.raises(MachineError, match="draws 4x2, expected 4x4"):
