@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import merge_card, parse_cards
+from ...golden.specification.card_order import MAXIMUM_NODES, merge_card, parse_cards
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
@@ -57,6 +57,12 @@ class CompareOptions:
     engine: str = AUTO
     random_memory: int | None = None
     processes: int | None = None
+
+    def __post_init__(self) -> None:
+        for nodes in self.nodes:
+            if not 1 <= nodes <= MAXIMUM_NODES:
+                raise InputError(f"nodes: {nodes} is not from 1 to {MAXIMUM_NODES}; a cage of a "
+                                 "sweep has so many")
 
     def cages(self) -> list[Cage]:
         """Of cages of nodes the one that is sent its triangles in each frame comes first."""
@@ -162,7 +168,7 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     with the golden model and with each other.
 
     ``scene``    a mesh file, a saved display list (``.npz``), ``hard:NAME`` or a built-in scene
-    ``cards``    a cage each
+    ``cards``    a cage each; one alone may be a string
     ``out``      folder of the report; None writes none
     ``step``     is called with a few words as the work begins, and as each cage is done
     ``machine``  the fields of ``MachineOptions`` that are for all cages: ``size``,
@@ -178,8 +184,9 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     >>> comparison.identical, [run.fragments for run in comparison.runs]
     (True, [38, 38])
     """
-    options = CompareOptions(MachineOptions(**machine), tuple(cards), retain, tuple(nodes),
-                             simulate, cells, engine, random_memory, processes)
+    cages = (cards,) if isinstance(cards, str) else tuple(cards)
+    options = CompareOptions(MachineOptions(**machine), cages, retain, tuple(nodes), simulate,
+                             cells, engine, random_memory, processes)
     if out is None:
         return _compared(scene, options, command_line, step)
     from .comparison_report import COMPARISON_FILES, write_comparison  # charts take a second

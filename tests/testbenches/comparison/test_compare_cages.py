@@ -176,7 +176,13 @@ def test_no_cage_at_all(small, tmp_path, monkeypatch):
         small(scene="teapott", out="out")
     with pytest.raises(TypeError, match="crads"):
         small(crads="PM")
+    with pytest.raises(InputError, match="nodes: 65 is not from 1 to 64"):
+        small(("2x(PM)",), nodes=(1, 65), out="out")
     assert listing() == {}
+
+
+def test_one_cage_alone(small):
+    assert [run.cage.label for run in small("2x(PM)").runs] == ["2x(PM)"]
 
 
 def test_pictures_of_two_resolutions(small):
