@@ -16,6 +16,7 @@ from ...golden.specification import commands
 from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
 from ..engines.engine import Job
 from .conversation import responses_owed
 
@@ -30,9 +31,15 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     machine reports.  With ``fraction_bits``, fewer than the machine's, the host does it with planes
     rounded to these: the machine then draws the picture of one that has no more, value for value
     and clock for clock, if its words have the integer bits for the greater error.  Raises
-    ``InputError`` for a list that is too wide for the machine.  Lists of a machine that sets up
-    take vertices alone, so what the host has prepared goes round them.
+    ``InputError`` for a list that is too wide for the machine, and for a machine that draws
+    nothing.  Lists of a machine that sets up take vertices alone, so what the host has prepared
+    goes round them.
     """
+    fault = organisation_of(configuration).fault
+    if fault is not None:
+        raise InputError(f"cards: {configuration.cards}: such a machine boots and draws nothing, "
+                         f"fault {int(fault)} ({fault.name}); put as many memory units into each "
+                         "node, a power of two")
     triangles = _triangle_words(configuration, display_list, fraction_bits)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     vertices = configuration.setup == "hardware"
