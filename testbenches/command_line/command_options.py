@@ -34,34 +34,25 @@ class Size(click.ParamType):
         return width, height
 
 
-class FractionBits(click.ParamType):
-    """A number of bits, or ``exact``."""
+class NumberOr(click.ParamType):
+    """A whole number from ``low`` to ``high``, or ``word``."""
 
-    name = "N|exact"
-
-    def convert(self, value: Any, param: click.Parameter | None,
-                ctx: click.Context | None) -> int | str:
-        if value == "exact":
-            return "exact"
-        if not re.fullmatch(r"[0-9]{1,9}", value) or int(value) > MAX_FRACTION_BITS:
-            self.fail(f"{value!r} is neither 'exact' nor a whole number from 0 to "
-                      f"{MAX_FRACTION_BITS}", param, ctx)
-        return int(value)
-
-
-class Packet(click.ParamType):
-    """A number of triangles, or ``contiguous``."""
-
-    name = "N|contiguous"
+    def __init__(self, word: str, low: int, high: int) -> None:
+        self.name = f"N|{word}"
+        self.word, self.low, self.high = word, low, high
 
     def convert(self, value: Any, param: click.Parameter | None,
                 ctx: click.Context | None) -> int | str:
-        if value == "contiguous":
-            return "contiguous"
-        if not re.fullmatch(r"[0-9]{1,10}", value) or not 1 <= int(value) <= MAXIMUM_PACKET:
-            self.fail(f"{value!r} is neither 'contiguous' nor a whole number from 1 to "
-                      f"{MAXIMUM_PACKET}", param, ctx)
+        if value == self.word:
+            return self.word
+        if not re.fullmatch(r"[0-9]{1,10}", value) or not self.low <= int(value) <= self.high:
+            self.fail(f"{value!r} is neither '{self.word}' nor a whole number from {self.low} to "
+                      f"{self.high}", param, ctx)
         return int(value)
+
+
+FRACTION_BITS = NumberOr("exact", 0, MAX_FRACTION_BITS)
+PACKET = NumberOr("contiguous", 1, MAXIMUM_PACKET)
 
 
 class Several(click.ParamType):
@@ -89,7 +80,7 @@ _CAGE_OPTIONS = (
                  help="A named machine; other options override it."),
 )
 _PRECISION_OPTIONS = (
-    click.option("--fraction-bits", type=FractionBits(), metavar="N|exact",
+    click.option("--fraction-bits", type=FRACTION_BITS, metavar="N|exact",
                  help="Fraction bits of depth and colour; exact takes what the scene needs.  "
                  "[default: exact]"),
     click.option("--max-error", type=click.IntRange(0, MAXIMUM_ERROR), metavar="LSB",
@@ -121,7 +112,7 @@ _FURTHER_OPTIONS = (
 )
 
 _NODE_OPTIONS = (
-    click.option("--packet", type=Packet(), metavar="N|contiguous",
+    click.option("--packet", type=PACKET, metavar="N|contiguous",
                  help="Where merge cards end nodes: how many triangles that follow one another go "
                  "to one node, or one run of the list for each node.  [default: 1]"),
     click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",

@@ -12,7 +12,7 @@ from cardcage.golden.merging.binary_swap import merge_binary_swap
 from cardcage.golden.merging.node_picture import node_pictures
 from cardcage.golden.merging.tree import merge_tree
 from cardcage.golden.organisations.shares import Shares
-from cardcage.testbenches.command_line.command_options import Packet
+from cardcage.testbenches.command_line.command_options import PACKET
 from cardcage.testbenches.speed.cases import case_lists
 from cardcage.testbenches.support.text_table import TextTable
 
@@ -37,7 +37,7 @@ def table(case: str, nodes: int, packet: int | str, times: int) -> TextTable:
 @click.command()
 @click.option("--case", default="mesh", show_default=True)
 @click.option("--nodes", type=click.IntRange(1, 64), default=16, show_default=True)
-@click.option("--packet", type=Packet(), default="1", show_default=True)
+@click.option("--packet", type=PACKET, default="1", show_default=True)
 @click.option("--times", type=click.IntRange(1), default=1, show_default=True,
               help="How often a peers' list is repeated.")
 def main(case: str, nodes: int, packet: int | str, times: int) -> None:
