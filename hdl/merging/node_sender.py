@@ -57,7 +57,8 @@ class NodeSender(wiring.Component):
             *(word.pixel[name].eq(units.pixel[name]) for name in units.pixel.shape().members),
             following.eq((units.unit | 1) + 1),
             ends.eq(~units.more & (~units.valid | self.words.ready)),
-            other_left.eq(((units.unit ^ 1) < self.total) & ~finished.bit_select(~current, 1)),
+            other_left.eq(((units.unit ^ 1) < self.total)
+                          & ~Mux(current, finished[0], finished[1])),
         ]
         with m.FSM():
             with m.State("IDLE"):

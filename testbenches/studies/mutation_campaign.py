@@ -20,9 +20,9 @@ from cardcage.testbenches.command_line.progress import step_bar
 from cardcage.testbenches.support.atomic_output import atomic_file
 from cardcage.testbenches.support.text_table import TextTable
 
-from .campaign_trial import BEYOND, Copy, Outcome, own_tests
-from .equivalent_mutants import EQUIVALENT, Equivalent
-from .mutants import Mutant, mutants_of
+from .mutation.campaign_trial import BEYOND, Copy, Outcome, own_tests
+from .mutation.equivalent_mutants import EQUIVALENT, Equivalent
+from .mutation.mutants import Mutant, mutants_of
 
 ROOT = Path(__file__).parents[2]
 KILLED, SURVIVED, SAME = "killed", "survived", "equivalent"

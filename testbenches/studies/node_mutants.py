@@ -13,8 +13,8 @@ import click
 from cardcage.testbenches.command_line.progress import step_bar
 from cardcage.testbenches.support.text_table import TextTable
 
-from .campaign_trial import Copy
-from .mutants import Mutant
+from .mutation.campaign_trial import Copy
+from .mutation.mutants import Mutant
 from .mutation_campaign import KILLED, ROOT, SURVIVED
 
 

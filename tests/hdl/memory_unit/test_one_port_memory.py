@@ -19,7 +19,7 @@ def test_random_accesses(words, depth_bits, tag_bits, seed):
 
 
 @pytest.mark.parametrize(("name", "wrong"), [
-    ("words", 0), ("words", -1), ("words", 1 << 21), ("depth_bits", 0), ("depth_bits", 33),
+    ("words", 0), ("words", -1), ("words", 1 << 21), ("depth_bits", 0), ("depth_bits", 49),
     ("tag_bits", 1), ("tag_bits", 7)])
 def test_bad_sizes(name, wrong):
     rejects(OnePortMemory, name, **{"words": 4, "depth_bits": 8, "tag_bits": 4} | {name: wrong})

@@ -23,6 +23,6 @@ def test_random_accesses(monkeypatch, kind, words, depth_bits, tag_bits, seed):
 
 
 @pytest.mark.parametrize(("name", "wrong"), [
-    ("words", 0), ("words", 1 << 21), ("depth_bits", 33), ("tag_bits", 1)])
+    ("words", 0), ("words", 1 << 21), ("depth_bits", 49), ("tag_bits", 1)])
 def test_bad_sizes(name, wrong):
     rejects(TwoPortMemory, name, **{"words": 4, "depth_bits": 8, "tag_bits": 4} | {name: wrong})

@@ -14,9 +14,11 @@ from cardcage.hdl.processing_element.control import ProcessingElementControl
 SERVICES = {"survey": "surveying", "read_back": "reading"}
 FIRST, END, FRAGMENTS, BUSY = 1, 4, 0x89ABCDEF, 0x01234567
 DEPTHS = [17, 0, 255, 128, 3]
+#: For merge cards only.
 UNKNOWN = 7
 #: A triangle is none: it does not pass through here.
-OPERATIONS = [kind for kind in Operation if kind != Operation.DRAW]
+OPERATIONS = [Operation.SURVEY, Operation.FRAME_START, Operation.READ_DEPTH,
+              Operation.READ_COUNTERS]
 
 
 class Datapath(Agent):

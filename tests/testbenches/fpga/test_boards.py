@@ -116,8 +116,11 @@ def test_registers_of_the_ram_are_no_cells_of_the_board(tmp_path):
 def test_machines_are_exact_for_every_triangle(placed):
     assert run("--seeds", 1).exit_code == 0
     machines = {name: part.configuration for name, part in zip(BOARDS, placed, strict=True)}
-    for machine in machines.values():
-        assert (machine.width, machine.height, machine.cards) == (512, 512, "PMM")
+    for name, machine in machines.items():
+        merge = {"chain": "C", "tree": "T"}.get(name.removeprefix("unit-of-").split("-")[0])
+        cards = "PMM" if merge is None else f"PMM{merge}" * 2
+        assert (machine.width, machine.height, machine.cards) == (512, 512, cards)
+        assert machine.order_bits == 0
         assert (machine.sub_bits, machine.depth_bits, machine.fifo_depth) == (8, 24, 16)
         assert machine.fraction_bits == exact_fraction_bits(512 * 512 << 16, 1022)
         assert machine.edges_on_screen and machine.stays_in_range

@@ -99,7 +99,7 @@ def test_json_keys(folder):
     cycles = facts["cycles"]
     assert cycles["total"] > cycles["boot"] + cycles["draw"] > cycles["boot"] > 0
     assert facts["efficiency"] == pytest.approx(facts["fragments"] / cycles["draw"])
-    assert set(facts["per_pe"][0]) == {"first_unit", "units", "fragments", "busy"}
+    assert set(facts["per_pe"][0]) == {"node", "first_unit", "units", "fragments", "busy"}
     assert facts["per_pe"][0]["busy"] <= cycles["draw"] + 20
     activity = facts["activity"]
     assert 0 < activity["clocks"] - cycles["draw"] < 8

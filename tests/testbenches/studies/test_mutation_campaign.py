@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 from testbenches.studies import mutation_campaign
-from testbenches.studies.campaign_trial import Outcome, own_tests
-from testbenches.studies.equivalent_mutants import EQUIVALENT, Equivalent
-from testbenches.studies.mutants import mutants_of
+from testbenches.studies.mutation.campaign_trial import Outcome, own_tests
+from testbenches.studies.mutation.equivalent_mutants import EQUIVALENT, Equivalent
+from testbenches.studies.mutation.mutants import mutants_of
 from testbenches.studies.mutation_campaign import (
     KILLED,
     ROOT,

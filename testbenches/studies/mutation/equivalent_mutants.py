@@ -23,8 +23,9 @@ EQUIVALENT = (
         "1 << x_bits → 2 << x_bits", "No block has an offset beyond its distance."),
     Equivalent(
         "golden/cycles/frame_clocks.py",
-        "return (1000 + (commands + 4) * (6 * pixels + 16 * configuration.height + 64 + divisions)",
-        "6 * pixels + 16 * configuration.height + 64 → 6 * pixels + 16 * configuration.height + 65",
+        "per_command = (6 + 3 * steps) * pixels + 16 * configuration.height + 64 + divisions",
+        "(6 + 3 * steps) * pixels + 16 * configuration.height + 64 → "
+        "(6 + 3 * steps) * pixels + 16 * configuration.height + 65",
         "A margin: beyond it a machine is said to hang."),
     Equivalent(
         "golden/hard_cases/coordinate_range.py",

@@ -1,0 +1,1 @@
+"""Programs that are wrong in a single point: how they are made, and how their tests are run."""
