@@ -1,8 +1,8 @@
 """How fast nodes draw: shares sent one after another and lists kept in the nodes, with the bounds.
 
-Sixteen nodes of one processing element and two memory units with two ports, 512 by 512 pixels,
-triangles set up by the host; ``random_bbox16`` has its list sixteen times, so that a run of it for
-each node is the list once.  Every picture is compared with the golden one.
+Sixteen nodes of one processing element and two memory units, 512 by 512 pixels, triangles set up
+by the host; ``random_bbox16`` has its list sixteen times, so that a run of it for each node is the
+list once.  Every picture is compared with the golden one.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ class Row:
     equal: bool
 
 
-def measured(case: str, display_list: DisplayList, cards: str, retained: bool,
+def measured(case: str, display_list: DisplayList, cards: str, ports: int, retained: bool,
              packet: Packet) -> Row:
     """Draw the list once on a simulated cage, and follow it with the model."""
-    machine = plan(display_list, cards=cards, memory_ports=2, packet=packet,
+    machine = plan(display_list, cards=cards, memory_ports=ports, packet=packet,
                    retain=retained).configuration
     simulation = simulate_frame(machine, display_list)
     model = predict_cycles(machine, display_list, retained=retained)
@@ -83,19 +83,21 @@ def measured(case: str, display_list: DisplayList, cards: str, retained: bool,
         and all(simulation.sent[node] == pixels for node, pixels in sends.items()))
 
 
-def rows(merge: str, cases: tuple[str, ...]) -> Iterator[Row]:
+def rows(merge: str, ports: int, cases: tuple[str, ...]) -> Iterator[Row]:
     for case in cases:
         display_list = case_lists(case, order="random", times=CASES[case]).once
         for retained, packet in WAYS:
-            yield measured(case, display_list, f"{NODES}x(PMM{merge})", retained, packet)
+            yield measured(case, display_list, f"{NODES}x(PMM{merge})", ports, retained, packet)
 
 
 @click.command()
 @click.option("--merge", type=click.Choice(["C", "T"]), default="C", show_default=True)
+@click.option("--ports", type=click.IntRange(1, 2), default=2, show_default=True,
+              help="Of each memory unit.")
 @click.option("--case", "cases", type=click.Choice(list(CASES)), multiple=True,
               default=list(CASES), show_default=True)
 @click.option("--json", "as_json", is_flag=True)
-def main(merge: str, cases: tuple[str, ...], as_json: bool) -> None:
+def main(merge: str, ports: int, cases: tuple[str, ...], as_json: bool) -> None:
     """Measure sixteen nodes.
 
     \b
@@ -104,7 +106,7 @@ def main(merge: str, cases: tuple[str, ...], as_json: bool) -> None:
       python -m testbenches.studies.node_speed --merge T --case mesh --json
     """
     found = []
-    for row in rows(merge, cases):
+    for row in rows(merge, ports, cases):
         found.append(row)
         if not as_json:
             click.echo(f"{row.case} {'retained' if row.retained else 'immediate'} {row.packet}: "
