@@ -24,14 +24,6 @@ class ChainMerge(MergeCard):
 
     Members
     -------
-    left: In(Connector), right: Out(Connector)
-        The neighbouring slots; no memory bus passes.
-    broadcast: In(BroadcastLines)
-        Lines of the central broadcast controller.
-    own: Out(BroadcastLines)
-        To the node's processing elements.
-    lists_full: Out(1)
-        Some triangle found no room in the node's list; only with a list memory.
     scan_left: In(ScanChain), scan_right: Out(ScanChain)
         Scan lines: those from the left are also the node's.
     scan: Out(ScanLines)

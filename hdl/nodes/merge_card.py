@@ -25,8 +25,16 @@ class MergeCard(wiring.Component):
 
     A subclass adds ``members`` and how it merges, in ``merge``, and drives ``sent`` there.
 
-    Members: ``left``, ``right``, ``broadcast`` and ``own`` of every merge card, ``lists_full`` of
-    one with a list memory, and those of the subclass, which describes them all.
+    Members
+    -------
+    left: In(Connector), right: Out(Connector)
+        The neighbouring slots; no memory bus passes.
+    broadcast: In(BroadcastLines)
+        Lines of the central broadcast controller.
+    own: Out(BroadcastLines)
+        To the node's processing elements.
+    lists_full: Out(1)
+        Some triangle found no room in the node's list; only with a list memory.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

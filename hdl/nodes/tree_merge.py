@@ -26,14 +26,6 @@ class TreeMerge(MergeCard):
 
     Members
     -------
-    left: In(Connector), right: Out(Connector)
-        The neighbouring slots; no memory bus passes.
-    broadcast: In(BroadcastLines)
-        Lines of the central broadcast controller.
-    own: Out(BroadcastLines)
-        To the node's processing elements.
-    lists_full: Out(1)
-        Some triangle found no room in the node's list; only with a list memory.
     nodes: In(node_bits)
         How many there are.
     tree: In(TreeLines)

@@ -104,8 +104,16 @@ def _meanings(component: wiring.Component, path: tuple[str | int, ...]) -> list[
 
 
 def _members(described: type) -> dict[str, str]:
-    """Name → text in the section Members of a docstring; a text belongs to the line above it."""
-    _, _, section = (inspect.getdoc(described) or "").partition("Members\n-------\n")
+    """Name → text in the sections Members of a class and of those it is derived from."""
+    texts: dict[str, str] = {}
+    for each in reversed(described.__mro__):
+        texts |= _members_in(inspect.cleandoc(each.__doc__ or ""))
+    return texts
+
+
+def _members_in(docstring: str) -> dict[str, str]:
+    """Those in one docstring; a text belongs to the line above it."""
+    _, _, section = docstring.partition("Members\n-------\n")
     texts: dict[str, str] = {}
     names: list[str] = []
     for line in section.partition("\n\n")[0].splitlines():
