@@ -6,7 +6,7 @@ from functools import partial
 
 from amaranth.lib import wiring
 
-from ..golden.specification.card_order import MERGE_CARDS
+from ..golden.specification.card_order import CARD_MODULES, MERGE_CARDS
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.queues import depth_lanes
 from .arithmetic.divider import Divider
@@ -18,7 +18,7 @@ from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
-from .machine import BOARDS, CARDS
+from .machine import BOARDS
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
 from .memory_unit.one_port_memory import OnePortMemory
@@ -49,9 +49,6 @@ from .triangle_setup.vertex_sort import VertexSort
 
 __all__ = ["COMPONENTS"]
 
-#: Names of the cards' modules → their letters in the card order.
-LETTERS = {name: letter for letter, name in CARDS.items()}
-
 
 def _depth(configuration: MachineConfiguration) -> dict[str, int]:
     """The interpolant that every machine has."""
@@ -60,9 +57,9 @@ def _depth(configuration: MachineConfiguration) -> dict[str, int]:
 
 def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
     """A merge card is as in a cage that it ends, where the configuration has none."""
-    letter = LETTERS.get(name)
-    if letter in MERGE_CARDS:
-        configuration = _ended_by(letter, configuration)
+    for letter in MERGE_CARDS:
+        if name == CARD_MODULES[letter]:
+            configuration = _ended_by(letter, configuration)
     return BOARDS[name](configuration=configuration)
 
 

@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ..golden.specification import commands
 from ..golden.specification.card_order import (
-    CARD_NAMES,
+    CARD_MODULES,
     MEMORY_UNIT,
     MERGE_CARDS,
     PROCESSING_ELEMENT,
@@ -25,7 +25,7 @@ from .processing_element.processing_element import ProcessingElement
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
-__all__ = ["BOARDS", "CARDS", "Machine", "boards_of"]
+__all__ = ["BOARDS", "Machine", "boards_of"]
 
 #: Every kind of board, by the name of its Verilog module.
 BOARDS: dict[str, type[wiring.Component]] = {
@@ -37,18 +37,11 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "tree_merge": TreeMerge,
 }
 
-#: The boards that slots can hold, by their letter in the card order.
-CARDS = {letter: name.replace(" ", "_") for letter, name in CARD_NAMES.items()}
-
-
-#: Those that are only in cages that have them in their card order.
-_MERGE_CARDS = {CARDS[letter]: letter for letter in MERGE_CARDS}
-
 
 def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
     """The kinds of boards that a machine has."""
-    return {name: board for name, board in BOARDS.items()
-            if name not in _MERGE_CARDS or _MERGE_CARDS[name] in configuration.cards}
+    others = {CARD_MODULES[letter] for letter in MERGE_CARDS if letter not in configuration.cards}
+    return {name: board for name, board in BOARDS.items() if name not in others}
 
 
 class Machine(wiring.Component):
@@ -79,7 +72,7 @@ class Machine(wiring.Component):
         self.configuration = configuration
         self.controller = self.make_board("central_broadcast_controller")
         self.scan_generator = self.make_board("video_scan_generator")
-        self.cards = [self.make_board(CARDS[letter]) for letter in configuration.cards]
+        self.cards = [self.make_board(CARD_MODULES[letter]) for letter in configuration.cards]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -116,16 +109,13 @@ class Machine(wiring.Component):
     @property
     def nodes(self) -> list[Node]:
         """The cards of each node; of a cage of nodes."""
-        found, first = [], 0
-        for slot, (card, letter) in enumerate(zip(self.cards, self.configuration.cards,
-                                                  strict=True)):
+        found, elements, units = [], [], []
+        for card, letter in zip(self.cards, self.configuration.cards, strict=True):
             if letter == self.configuration.merge:
-                cards = list(zip(self.cards[first:slot], self.configuration.cards[first:slot],
-                                 strict=True))
-                found.append(Node(
-                    [own for own, kind in cards if kind == PROCESSING_ELEMENT],
-                    [own for own, kind in cards if kind == MEMORY_UNIT], card))
-                first = slot + 1
+                found.append(Node(elements, units, card))
+                elements, units = [], []
+            else:
+                (elements if letter == PROCESSING_ELEMENT else units).append(card)
         return found
 
     @property
@@ -140,7 +130,7 @@ class Machine(wiring.Component):
         m.submodules.scan_generator = generator = self.scan_generator
         for slot, (card, letter) in enumerate(zip(self.cards, self.configuration.cards,
                                                   strict=True)):
-            m.submodules[f"slot_{slot}_{CARDS[letter]}"] = card
+            m.submodules[f"slot_{slot}_{CARD_MODULES[letter]}"] = card
 
         wiring.connect(m, controller.commands, wiring.flipped(self.commands))
         pins = wires(m, "pin_wires")

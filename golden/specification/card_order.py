@@ -14,6 +14,8 @@ TREE_MERGE = "T"
 #: Every card that a slot can hold, by its letter.  X is no letter: it counts, as in ``4x(PMM)``.
 CARD_NAMES = {PROCESSING_ELEMENT: "processing element", MEMORY_UNIT: "memory unit",
               CHAIN_MERGE: "chain merge", TREE_MERGE: "tree merge"}
+#: The Verilog module of each.
+CARD_MODULES = {letter: name.replace(" ", "_") for letter, name in CARD_NAMES.items()}
 #: Cards that end a node, which keeps a picture of its own, and merge its picture with the others'.
 MERGE_CARDS = (CHAIN_MERGE, TREE_MERGE)
 MAXIMUM_CARDS = 4096

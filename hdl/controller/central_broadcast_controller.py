@@ -162,11 +162,10 @@ class CentralBroadcastController(wiring.Component):
         """The command need not wait for triangles that are still being set up."""
         if self._setup is None:
             return C(1)
-        in_turn = (self._opcode == Opcode.TRIANGLE) | ~self._setup.busy
+        vertices = Opcode.TRIANGLE
         if self.configuration.list_words:  # what is set up is all to be loaded, or all to be drawn
-            in_turn &= ~self._setup.busy | ~self._loading
-            in_turn |= (self._opcode == Opcode.LOAD) & self._loading
-        return in_turn
+            vertices = Mux(self._loading, Opcode.LOAD, Opcode.TRIANGLE)
+        return (self._opcode == vertices) | ~self._setup.busy
 
     @property
     def _vertices(self):

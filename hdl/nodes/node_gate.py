@@ -4,9 +4,10 @@ from amaranth.hdl import *
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from ...golden.specification.commands import list_word_bits
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import BroadcastLines
-from ..backplane.words import Operation, prepared_triangle_layout
+from ..backplane.words import Operation
 from .list_memory import ListMemory
 
 __all__ = ["NodeGate"]
@@ -43,7 +44,7 @@ class NodeGate(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self._kept = prepared_triangle_layout(configuration).size - configuration.node_bits
+        self._kept = list_word_bits(configuration)
         self._list = (ListMemory(words=configuration.list_words, word_bits=self._kept)
                       if configuration.list_words else None)
         super().__init__({

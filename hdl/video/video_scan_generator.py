@@ -139,16 +139,14 @@ class VideoScanGenerator(wiring.Component):
             return delayed(m, signal, self.bus_latency, name, reset_less=False)
 
         on_bus = when_on_bus(active, "active")
+        m.d.comb += scan.show.eq(
+            delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
         if self.configuration.scans_rank:
-            m.d.comb += scan.show.eq(
-                delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
             self._chain(m, begin=when_on_bus(pixel, "pixel"), active=on_bus,
                         horizontal_sync=when_on_bus(horizontal_sync, "horizontal_sync"),
                         vertical_sync=when_on_bus(vertical_sync, "vertical_sync"))
             return m
         color = Mux(scan.drawn, scan.video, self.background)
-        m.d.comb += scan.show.eq(
-            delayed(m, scan.fetch, self.show_latency, "fetch", reset_less=False))
         m.d.sync += [
             pins.pixel.eq(when_on_bus(pixel, "pixel")),
             pins.active.eq(on_bus),

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ...golden.specification.card_order import CARD_NAMES
+from ...golden.specification.card_order import CARD_MODULES
 from ...golden.specification.configuration import MachineConfiguration
 from ..support.measurement_cache import measured_once, package_hash
 
@@ -45,8 +45,7 @@ def cells_of(configuration: MachineConfiguration) -> dict[str, int]:
     """
     letters = Counter(configuration.cards)
     boards = {"central_broadcast_controller": 1, "video_scan_generator": 1} | {
-        name.replace(" ", "_"): letters[letter] for letter, name in CARD_NAMES.items()
-        if letters[letter]}
+        module: letters[letter] for letter, module in CARD_MODULES.items() if letters[letter]}
     total: Counter[str] = Counter()
     for board, number in boards.items():
         for kind, cells in _cells(configuration, board).items():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import textwrap
-from collections.abc import Collection
 from contextlib import ExitStack
 from dataclasses import dataclass, fields
 from importlib.metadata import version
@@ -12,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from ...golden.specification.card_order import CARD_NAMES, MERGE_CARDS
+from ...golden.specification.card_order import CARD_MODULES, MERGE_CARDS
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..machine_options import (
@@ -25,17 +24,12 @@ from ..machine_options import (
 from ..support.any_characters import readable
 from ..support.atomic_output import atomic_file, output_errors
 
-
-def _modules(letters: Collection[str]) -> list[str]:
-    """The names of cards' modules."""
-    return [name.replace(" ", "_") for letter, name in CARD_NAMES.items() if letter in letters]
-
-
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
 #: Amaranth and so is not asked here).
 COMPONENT_NAMES = (
-    "central_broadcast_controller", *_modules(set(CARD_NAMES) - set(MERGE_CARDS)),
-    "video_scan_generator", *_modules(MERGE_CARDS),
+    "central_broadcast_controller", *(
+        module for letter, module in CARD_MODULES.items() if letter not in MERGE_CARDS),
+    "video_scan_generator", *(CARD_MODULES[letter] for letter in MERGE_CARDS),
     "broadcast_queue", "depth_read_back", "divider", "drawn_map", "edge_columns", "edge_setup",
     "fragment_stepper", "frame_tags", "id_increment", "interpolator", "lattice_block",
     "memory_bus_selector", "nearest_word", "one_port_depth_test", "one_port_lane",
