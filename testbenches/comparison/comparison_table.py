@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import groupby
 
-from rich.console import Console
-
 from ...golden.organisations.organisation_of import organisation_of
-from ..support.text_table import TextTable
+from ..support.text_table import TextTable, print_tables, tables_text
 from .cage import CageRun
 from .compare_cages import CageComparison
 from .node_sweep import Curve
@@ -126,15 +124,9 @@ def _picture(group: list[CageRun]) -> str:
 
 def comparison_text(comparison: CageComparison) -> str:
     """Plain lines, the columns aligned."""
-    return "\n\n".join(["\n".join(headline(comparison)),
-                        *(table.text() for table in tables(comparison))])
+    return tables_text(headline(comparison), tables(comparison))
 
 
 def comparison_table(comparison: CageComparison) -> None:
     """The same as tables on the terminal."""
-    console = Console()
-    for line in headline(comparison):
-        console.print(line, highlight=False, soft_wrap=True)
-    for table in tables(comparison):
-        console.print(f"\n{table.title}", highlight=False, soft_wrap=True)
-        table.print()
+    print_tables(headline(comparison), tables(comparison))

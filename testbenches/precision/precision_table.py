@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from rich.console import Console
-
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.precision.precision_study import PictureError
 from ..fpga.place_and_route import Placement
-from ..support.text_table import TextTable
+from ..support.text_table import TextTable, print_tables, tables_text
 from .scene_precision import Precision, PrecisionRow
 
 #: Stands for a figure that was not measured.
@@ -60,22 +58,12 @@ def _speeds(precision: Precision) -> TextTable:
 
 def precision_text(precision: Precision) -> str:
     """The study as plain lines, the columns aligned."""
-    return "\n\n".join(["\n".join(headline(precision)),
-                        *(table.text() for table in tables(precision)),
-                        "\n".join(remarks(precision))])
+    return tables_text(headline(precision), tables(precision), remarks(precision))
 
 
 def precision_table(precision: Precision) -> None:
     """The same as tables on the terminal."""
-    console = Console()
-    for line in headline(precision):
-        console.print(line, highlight=False, soft_wrap=True)
-    for table in tables(precision):
-        console.print(f"\n{table.title}", highlight=False, soft_wrap=True)
-        table.print()
-    console.print()
-    for line in remarks(precision):
-        console.print(line, highlight=False, soft_wrap=True)
+    print_tables(headline(precision), tables(precision), remarks(precision))
 
 
 def headline(precision: Precision) -> list[str]:

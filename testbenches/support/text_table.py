@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rich.console import Console
@@ -37,3 +38,28 @@ class TextTable:
             table.add_row(*row)
         wanted = sum(widths) + 2 * len(widths)
         Console(width=max(wanted, Console().width)).print(table)
+
+
+def tables_text(headline: Sequence[str], tables: Sequence[TextTable],
+                remarks: Sequence[str] = ()) -> str:
+    """Lines, tables and further lines as plain text, the columns aligned."""
+    return "\n\n".join(["\n".join(headline), *(table.text() for table in tables),
+                        *(["\n".join(remarks)] if remarks else [])])
+
+
+def print_tables(headline: Sequence[str], tables: Sequence[TextTable],
+                 remarks: Sequence[str] = ()) -> None:
+    """The same on the terminal."""
+    console = Console()
+
+    def say(lines: Sequence[str]) -> None:
+        for line in lines:
+            console.print(line, highlight=False, soft_wrap=True)
+
+    say(headline)
+    for table in tables:
+        say([f"\n{table.title}"])
+        table.print()
+    if remarks:
+        console.print()
+        say(remarks)
