@@ -127,8 +127,6 @@ def _sending_order(configuration: MachineConfiguration, display_list: DisplayLis
     Lists that are retained are followed side by side: triangle by triangle of the display list.
     """
     shares = organisation_of(configuration).shares(display_list.triangles)
-    place = np.arange(shares.triangles)
-    if not retained:
-        place[shares.host_order] = place.copy()
+    place = np.arange(shares.triangles) if retained else shares.host_place
     sent = np.sort(np.concatenate([place[work.primitive] for work in works]))
     return sent, shares.node[sent if retained else shares.host_order[sent]]

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..merging.cage import merge_cage
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from .broadcast import SetupTiming
 from .cycle_estimate import estimate_cycles
-from .merge_clocks import merge_clocks
+from .merge_clocks import predict_merge
 from .one_port_lanes import scan_share
 
 #: Clocks in which a processing element surveys a unit of its own, and finds that one is not.
@@ -74,15 +73,8 @@ def predict_frame(configuration: MachineConfiguration, display_list: DisplayList
         draw=draw,
         scan=configuration.cycles_per_scan,
         read_back=READ_BACK * organisation.depths_read_back,
-        merge=_merge(configuration, display_list),
+        merge=predict_merge(configuration, display_list),
     )
-
-
-def _merge(configuration: MachineConfiguration, display_list: DisplayList) -> int:
-    if not organisation_of(configuration).merges_after_drawing:
-        return 0
-    _, traffic = merge_cage(configuration, display_list)
-    return sum(merge_clocks(configuration, traffic))
 
 
 def most_frame_clocks(configuration: MachineConfiguration, commands: int) -> int:
@@ -93,7 +85,7 @@ def most_frame_clocks(configuration: MachineConfiguration, commands: int) -> int
     and some scans.
     """
     organisation = organisation_of(configuration)
-    steps = (organisation.nodes - 1).bit_length() if organisation.merges_after_drawing else 0
+    steps = organisation.merge_steps
     pixels = configuration.width * configuration.height
     divisions = DIVISIONS * configuration.setup_interval
     per_command = (6 + 3 * steps) * pixels + 16 * configuration.height + 64 + divisions

@@ -6,17 +6,20 @@ the sender to the receiver, and as what goes before the first pixel and after th
     step = STEP_CLOCKS + clocks of the longest send + nodes on the way · HOP_CLOCKS
 
 A pixel takes a clock.  Where units have one port it is read and, if what comes is nearer, written,
-and since pixels come unit by unit that is all at one port, which the scan has now and then.  With
-several units that is more than it takes, by up to a third: what waits before one port is done while
-pixels for the next one come.
+at a port that the scan has now and then; pixels come from two units in turn, so that two ports
+share them.  How many each of the two units sends is not looked at, which makes this up to a tenth
+wrong.
 
 A chain merges while it is scanned, which takes no clock of a frame.
 """
 
 from __future__ import annotations
 
+from ..merging.cage import merge_cage
 from ..merging.traffic import Send, Traffic
+from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
 from .one_port_lanes import scan_share
 
 #: From the end of drawing to the first step.
@@ -29,6 +32,14 @@ STEP_CLOCKS = 19
 
 #: From a node to the next one on the way to the receiver.
 HOP_CLOCKS = 1
+
+
+def predict_merge(configuration: MachineConfiguration, display_list: DisplayList) -> int:
+    """Clocks that merging takes after drawing; 0 where none is left to be done."""
+    if not organisation_of(configuration).merges_after_drawing:
+        return 0
+    _, traffic = merge_cage(configuration, display_list)
+    return sum(merge_clocks(configuration, traffic))
 
 
 def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[int]:

@@ -45,6 +45,14 @@ class Traffic:
         return self.pixels * self.pixel_bits
 
     @property
+    def sent(self) -> list[int]:
+        """Pixels that each node sends."""
+        sent = [0] * self.nodes
+        for send in self.sends:
+            sent[send.sender] += send.pixels
+        return sent
+
+    @property
     def steps(self) -> list[int]:
         """The longest send of each step: all nodes of a step wait for it."""
         longest: dict[int, int] = {}

@@ -217,6 +217,11 @@ class Organisation(ABC):
         return len(self.node_units)
 
     @property
+    def merge_steps(self) -> int:
+        """Steps of merging after drawing; 0 where none is."""
+        return (self.nodes - 1).bit_length() if self.merges_after_drawing else 0
+
+    @property
     def units(self) -> int:
         """Memory units of a node, where all have as many."""
         return self.node_units[0]

@@ -82,6 +82,13 @@ class Shares:
         position = np.arange(self.triangles) % self.packet_triangles
         return np.lexsort((self.node, position, self.round))
 
+    @cached_property
+    def host_place(self) -> Int64:
+        """int64 (triangles,): how many triangles the host sends before each."""
+        place = np.empty(self.triangles, np.int64)
+        place[self.host_order] = np.arange(self.triangles)
+        return place
+
     def of_node(self, node: int) -> Int64:
         """The triangles of one node, in the list's order."""
         return np.flatnonzero(self.node == node)

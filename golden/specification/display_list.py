@@ -115,6 +115,14 @@ class DisplayList:
         return replace(self, position=self.position[triangles], depth=self.depth[triangles],
                        color=self.color[triangles])
 
+    def followed_by(self, *others: DisplayList) -> DisplayList:
+        """The triangles of this list, and then those of others in the same format."""
+        def together(field: str) -> NDArray[Any]:
+            return np.concatenate([getattr(each, field) for each in (self, *others)])
+
+        return replace(self, position=together("position"), depth=together("depth"),
+                       color=together("color"))
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an ``.npz``: to a temporary name first, then renamed into place."""
         target = Path(path)

@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
 from ...golden.merging.traffic import Traffic
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.machine_plan import plan
 from ...golden.reference.exact import depth_complexity
 from ...golden.scene_display_list import SceneDisplayList
+from ...golden.specification.card_order import parse_cards
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -33,6 +35,14 @@ class Cage:
     @property
     def label(self) -> str:
         return f"{self.cards} retained" if self.retained else self.cards
+
+    @property
+    def spelled(self) -> str | None:
+        """The cards one by one; None where they cannot be read, which planning the cage says."""
+        try:
+            return parse_cards(self.cards)
+        except InputError:
+            return None
 
     def options(self, asked: MachineOptions) -> MachineOptions:
         """What is asked of this cage, of all that is asked of every one."""
@@ -147,16 +157,14 @@ class CageJob:
 def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
            simulation: Simulation, golden: Traffic) -> list[NodeFigures]:
     organisation = organisation_of(configuration)
-    shares = organisation.shares(display_list.triangles)
-    sent, golden_sent = simulation.sent or [0], [0] * organisation.nodes
-    for send in golden.sends:
-        golden_sent[send.sender] += send.pixels
+    sent, golden_sent = simulation.sent or [0], golden.sent
     if organisation.merges and not organisation.merges_after_drawing:  # the last one's: to the pins
         golden_sent[-1] = configuration.width * configuration.height
     return [NodeFigures(
         fragments=sum(work.fragments for work in simulation.work if work.node == node),
-        golden_fragments=int(depth_complexity(display_list.chosen(shares.of_node(node)),
-                                              **organisation.resolution.shifts).sum()),
+        golden_fragments=int(depth_complexity(
+            share_of_node(configuration, display_list, node)[1],
+            **organisation.resolution.shifts).sum()),
         sent=sent[node], golden_sent=golden_sent[node]) for node in range(organisation.nodes)]
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import MAXIMUM_NODES, merge_card, parse_cards
+from ...golden.specification.card_order import MAXIMUM_NODES, merge_card
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
@@ -69,7 +69,8 @@ class CompareOptions:
         found: dict[Cage, None] = {}
         for cards in self.cards:
             lists = [False, True] if self.retain is None else [self.retain]
-            for retained in lists if _has_nodes(cards) else [False]:
+            nodes = merge_card(Cage(cards).spelled or "") is not None
+            for retained in lists if nodes else [False]:
                 found[Cage(cards, retained)] = None
         return list(found)
 
@@ -85,13 +86,6 @@ def expected_steps(**options: Any) -> int:
     """
     asked = CompareOptions(MachineOptions(), **options)
     return len(asked.cages()) + len(asked.points())
-
-
-def _has_nodes(cards: str) -> bool:
-    try:
-        return merge_card(parse_cards(cards)) is not None
-    except InputError:
-        return False  # said where the cage is planned
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +202,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     loaded = load_scene(scene, options.machine)
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
-    known = {(parse_cards(cage.cards), cage.retained) for cage in cages if _parses(cage)}
+    known = {(cage.spelled, cage.retained) for cage in cages}
     jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells)
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
@@ -228,16 +222,9 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
                           command_line, time.perf_counter() - began)
 
 
-def _parses(cage: Cage) -> bool:
-    try:
-        return bool(parse_cards(cage.cards))
-    except InputError:
-        return False
-
-
-def _key(place: Place) -> tuple[str, bool] | None:
+def _key(place: Place) -> tuple[str | None, bool] | None:
     """As which cage of the comparison a point is drawn, if it is one."""
-    return None if place.copies > 1 else (parse_cards(place.cage.cards), place.retained)
+    return None if place.copies > 1 else (place.cage.spelled, place.retained)
 
 
 def _curves(found: Sequence[Any], runs: Sequence[CageRun]) -> tuple[list[Curve], list[str]]:

@@ -12,15 +12,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...golden.cycles.cycle_model import predict_cycles
-from ...golden.cycles.merge_clocks import merge_clocks
-from ...golden.merging.cage import merge_cage
-from ...golden.organisations.organisation_of import organisation_of
+from ...golden.cycles.merge_clocks import predict_merge
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.card_order import merge_card, parse_cards
@@ -54,13 +50,8 @@ def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> Display
         turned = display_list.chosen(np.roll(np.arange(display_list.triangles), number * step))
         return replace(turned, depth=turned.depth // copies + (copies - 1 - number) * thickness)
 
-    parts = [copy(number) for number in range(copies)]
-
-    def together(field: str) -> NDArray[Any]:
-        return np.concatenate([getattr(part, field) for part in parts])
-
-    return replace(display_list, position=together("position"), depth=together("depth"),
-                   color=together("color"))
+    first, *others = (copy(number) for number in range(copies))
+    return first.followed_by(*others)
 
 
 @dataclass(frozen=True)
@@ -80,10 +71,7 @@ def predicted_time(configuration: MachineConfiguration, display_list: DisplayLis
     """What the cycle model says."""
     draw = predict_cycles(configuration, display_list, setup=setup_timing(configuration),
                           retained=retained).cycles
-    merge = 0
-    if organisation_of(configuration).merges_after_drawing:
-        merge = sum(merge_clocks(configuration, merge_cage(configuration, display_list)[1]))
-    return FrameTime(round(draw), merge)
+    return FrameTime(round(draw), predict_merge(configuration, display_list))
 
 
 @dataclass(frozen=True)
@@ -148,10 +136,8 @@ def places(cages: Sequence[Cage], nodes: Sequence[int]) -> Iterator[Place]:
     """The points of all curves, each once: with one node nothing has grown yet."""
     pieces: dict[tuple[str, bool], None] = {}
     for cage in cages:
-        try:
+        if cage.spelled is not None:
             pieces[repeated_piece(cage.cards), cage.retained] = None
-        except InputError:
-            continue  # said of the cage itself
     for piece, retained in pieces:
         for growing in (False, True):
             for number in sorted(set(nodes)):

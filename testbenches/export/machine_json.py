@@ -128,7 +128,7 @@ def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
         "packet": configuration.packet,
         "list_words": configuration.list_words,
         "pixel_bits": sent_pixel_bits(configuration),
-        "steps": (organisation.nodes - 1).bit_length() if organisation.merges_after_drawing else 0,
+        "steps": organisation.merge_steps,
         "counters": "READ_COUNTERS: after FRAGMENTS and BUSY of a node's processing elements SENT, "
                     "the pixels that its merge card sent for the picture",
     }

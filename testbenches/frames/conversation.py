@@ -29,12 +29,11 @@ def owed_at_boot(organisation: Organisation) -> list[Owed]:
 
 
 def _boot(organisation: Organisation) -> Iterator[Owed]:
-    for node, units in enumerate(organisation.node_units):
-        for domain in organisation.domains:
-            if domain.node == node:
-                yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
+    for number, node in enumerate(organisation.each):
+        for domain in node.domains:
+            yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
         if organisation.merges:
-            yield _report(ResponseKind.NODE, node=node, units=units)
+            yield _report(ResponseKind.NODE, node=number, units=node.units)
     yield _report(ResponseKind.UNITS, owned=organisation.owned_units,
                   total=sum(organisation.node_units))
     if organisation.merges:
@@ -82,9 +81,8 @@ def _silent(organisation: Organisation) -> list[Opcode]:
 def _counters(organisation: Organisation) -> list[Owed]:
     """From left to right: of each processing element, and of each node that is merged."""
     owed = []
-    for node in range(organisation.nodes):
-        elements = sum(domain.node == node for domain in organisation.domains)
-        owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * elements
+    for node in organisation.each:
+        owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * len(node.domains)
         owed += [Owed(ResponseKind.SENT)] * organisation.merges
     return owed
 

@@ -67,11 +67,7 @@ def _triangle_words(configuration: MachineConfiguration, display_list: DisplayLi
                        **organisation_of(configuration).resolution.shifts)
     prepared = in_finer_words(prepared, own)
     words = triangle_words.prepared_triangles(configuration, prepared, share)
-    if not configuration.node_bits:
-        return list(words)
-    place = np.empty(display_list.triangles, np.int64)
-    place[shares.host_order] = np.arange(display_list.triangles)
-    return list(words[np.argsort(place[prepared.primitive])])
+    return list(words[np.argsort(shares.host_place[prepared.primitive])])
 
 
 def frame_job(

@@ -60,12 +60,12 @@ def simulate_frame(configuration: MachineConfiguration, display_list: DisplayLis
 
 
 @contextmanager
-def engine_errors(engine: str) -> Iterator[None]:
-    """``InputError`` where the engine of that name cannot run here, ``MachineError`` where the
-    machine fails."""
+def engine_errors(engine: str, instead: str = "pysim") -> Iterator[None]:
+    """``InputError`` where the engine of that name cannot run here, which says what to take
+    ``instead``; ``MachineError`` where the machine fails."""
     try:
         yield
     except ToolMissingError as missing:
-        raise InputError(f"--engine {engine}: {missing}; or use --engine pysim") from None
+        raise InputError(f"--engine {engine}: {missing}; or use --engine {instead}") from None
     except (TimeoutError, AssertionError) as error:
         raise MachineError(f"the machine failed: {error}") from error

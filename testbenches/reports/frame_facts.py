@@ -87,9 +87,7 @@ def merging_facts(rendering: Rendering) -> dict[str, Any] | None:
     if not organisation_of(configuration).merges:
         return None
     _, traffic = merge_cage(configuration, rendering.scene.display_list)
-    golden = [0] * configuration.nodes
-    for send in traffic.sends:
-        golden[send.sender] += send.pixels
+    golden = traffic.sent
     links = {send.sender for send in traffic.sends}
     counted = [pixels if node in links else 0 for node, pixels in enumerate(simulation.sent)]
     return {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -100,17 +101,16 @@ def _activity_charts(rendering: Rendering) -> list[str]:
 def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
     """The cage from left to right."""
     organisation = organisation_of(configuration)
-    elements = list(enumerate(organisation.domains))
     groups = []
-    for node, units in enumerate(organisation.node_units):
-        own = [(number, domain) for number, domain in elements if domain.node == node]
-        orphans = own[0][1].first if own else units
+    elements = count()
+    for number, node in enumerate(organisation.each):
+        orphans = node.domains[0].first if node.domains else node.units
         if orphans:
             groups.append(CardGroup(None, range(orphans)))
-        groups += [CardGroup(number, range(domain.first, domain.first + domain.units))
-                   for number, domain in own]
+        groups += [CardGroup(next(elements), range(domain.first, domain.first + domain.units))
+                   for domain in node.domains]
         if organisation.merges:
-            groups.append(CardGroup(None, range(0), configuration.merge, node))
+            groups.append(CardGroup(None, range(0), configuration.merge, number))
     return groups
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any, Literal
@@ -72,11 +72,7 @@ class CaseLists:
     @property
     def frame(self) -> DisplayList:
         """Both, as the finished picture has them."""
-        def both(field: str) -> NDArray[Any]:
-            return np.concatenate([getattr(self.once, field), getattr(self.twice, field)])
-
-        return replace(self.once, position=both("position"), depth=both("depth"),
-                       color=both("color"))
+        return self.once.followed_by(self.twice)
 
 
 def _data(name: str) -> Any:
@@ -160,5 +156,4 @@ def _mesh(order: Order, random: np.random.Generator) -> tuple[DisplayList, Displ
     passes = [_list(mesh.position[shuffled], mesh.depth[shuffled] // 3 + (2 - turn) * third,
                     mesh.color[shuffled]) for turn in range(3)]
     once, second, third_pass = passes
-    return once, _list(*(np.concatenate([getattr(second, field), getattr(third_pass, field)])
-                         for field in ("position", "depth", "color")))
+    return once, second.followed_by(third_pass)

@@ -23,14 +23,13 @@ from ...golden.reference.exact import depth_complexity
 from ...golden.specification import commands
 from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.errors import InputError
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import Engine, EngineRun, Job, Progress
-from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import compare
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
 from ..frames.responses import Answers, MachineError
+from ..frames.simulation import engine_errors
 from .cases import CaseLists, Order
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
@@ -124,12 +123,8 @@ def measure(configuration: MachineConfiguration, cases: Sequence[CaseLists], eng
     ``MachineError`` where the machine does not deliver, ``InputError`` where the engine cannot run.
     """
     job, frames = _job(configuration, cases)
-    try:
+    with engine_errors(engine.name, instead="model"):
         run = engine.run(job, progress)
-    except ToolMissingError as missing:
-        raise InputError(f"--engine {engine.name}: {missing}; or use --engine model") from None
-    except (TimeoutError, AssertionError) as error:
-        raise MachineError(f"the machine failed: {error}") from error
     answers = Answers(configuration, run)
     return [_measurement(configuration, frame, number, run, answers)
             for number, frame in enumerate(frames)]

@@ -1,6 +1,5 @@
 """One frame through the simulated machine, checked where it leaves: video pins and read-back."""
 
-from dataclasses import replace
 
 import numpy as np
 from wide_machines import wide_machine
@@ -48,8 +47,7 @@ def random_list(seed, count, *, width=8, height=8, depth_bits=12, flat=False):
 
 def joined(first, second):
     """One display list after the other."""
-    return replace(first, **{field: np.concatenate([getattr(first, field), getattr(second, field)])
-                             for field in ("position", "depth", "color")})
+    return first.followed_by(second)
 
 
 def expected_video(configuration, color):

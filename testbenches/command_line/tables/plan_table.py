@@ -7,8 +7,8 @@ from dataclasses import asdict
 from rich.console import Console
 from rich.table import Table
 
+from ....golden.organisations.organisation_of import organisation_of
 from ....golden.planning.machine_plan import triangle_bits
-from ....golden.specification.card_order import TREE_MERGE
 from .scene_plan import CYCLE_ACCURACY, ScenePlan
 
 _COLUMNS = ("", "plan", "full", "saves", "because")
@@ -55,7 +55,8 @@ def _summary(planned: ScenePlan) -> list[str]:
     plan, machine = planned.plan, planned.plan.configuration
     chosen = (f"chosen for {planned.budget:,}" if planned.budget is not None else
               "as given")
-    takes = "a frame takes" if machine.merge != TREE_MERGE else "to draw, not to merge, takes"
+    takes = ("to draw, not to merge, takes" if organisation_of(machine).merges_after_drawing else
+             "a frame takes")
     lines = [
         f"each triangle broadcast: {triangle_bits(machine):,} bits instead of "
         f"{triangle_bits(plan.full):,} (saves counts these, each line by itself)",
