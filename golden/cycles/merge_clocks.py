@@ -55,6 +55,7 @@ def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[
 def _send_clocks(configuration: MachineConfiguration, send: Send) -> float:
     if configuration.memory_ports == 2:
         return send.pixels
+    assert send.receiver is not None, "only of a tree"
     # Pixels come from two units in turn, and are written to two while those of both have any.
     ports = min(2, configuration.units)
     clocks = max(send.pixels, (send.pixels + send.kept) / ports)

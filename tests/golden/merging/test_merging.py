@@ -11,6 +11,7 @@ import pytest
 from cardcage.golden.merging.binary_swap import merge_binary_swap
 from cardcage.golden.merging.chain import merge_chain
 from cardcage.golden.merging.node_picture import merged, nearer, node_pictures
+from cardcage.golden.merging.snoop import merge_snoop
 from cardcage.golden.merging.ties import order_matters
 from cardcage.golden.merging.tree import merge_tree, tree_pairs
 from cardcage.golden.organisations.shares import Shares
@@ -19,7 +20,8 @@ from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.display_list import DisplayList
 
 WIDTH, HEIGHT = 37, 23
-MERGES = {"chain": merge_chain, "tree": merge_tree, "binary swap": merge_binary_swap}
+MERGES = {"chain": merge_chain, "tree": merge_tree, "binary swap": merge_binary_swap,
+          "snoop": merge_snoop}
 
 
 def all_tied(triangles=40, seed=5):
