@@ -10,6 +10,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
 from .node_control import NodeControl
 from .one_node import OneNode
+from .snoop_control import SnoopControl
 from .tree_steps import TreeSteps
 
 __all__ = ["ChainControl", "TreeControl", "merge_control"]
@@ -106,4 +107,6 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return ChainControl(configuration=configuration)
     if configuration.sends_drawn:
         return TreeControl(configuration=configuration)
+    if configuration.snoops:
+        return SnoopControl(configuration=configuration)
     return OneNode()
