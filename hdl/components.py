@@ -6,7 +6,12 @@ from functools import partial
 
 from amaranth.lib import wiring
 
-from ..golden.specification.card_order import CARD_MODULES, FRAME_UNIT, MERGE_CARDS, SNOOP_MERGE
+from ..golden.specification.card_order import (
+    CARD_MODULES,
+    FRAME_UNIT,
+    MERGE_CARDS,
+    SNOOP_MERGE,
+)
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
 from ..golden.specification.queues import depth_lanes
 from .arithmetic.divider import Divider

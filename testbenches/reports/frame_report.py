@@ -30,21 +30,25 @@ REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "differen
 
 @dataclass(frozen=True)
 class CardGroup:
-    """Neighbouring cards in the drawing of the cage: a processing element and its units, or a
-    merge card.
+    """Neighbouring cards in the drawing of the cage: a processing element and its units, a merge
+    card, or the frame units.
 
     ``element``  None for units that belong to nobody
     ``merge``    the letter of a merge card, which is a group by itself
     ``node``     the node that it ends
+    ``frame``    they are frame units
     """
 
     element: int | None
     units: range
     merge: str | None = None
     node: int = 0
+    frame: bool = False
 
     @property
     def caption(self) -> str:
+        if self.frame:
+            return "what is shown"
         if self.merge is not None:
             return f"ends node {self.node}"
         if self.element is None:
@@ -111,6 +115,8 @@ def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
                    for domain in node.domains]
         if organisation.merges:
             groups.append(CardGroup(None, range(0), configuration.merge, number))
+    if configuration.snoops:
+        groups.append(CardGroup(None, range(configuration.frame_units), frame=True))
     return groups
 
 
