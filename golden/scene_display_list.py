@@ -37,8 +37,22 @@ class SceneDisplayList:
     notes: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class LoadedScene:
+    """A scene whose mesh is there, to be looked at several times; see ``read_scene``."""
+
+    scene: Scene
+    mesh: Mesh | None
+
+
+def read_scene(scene: str | Path) -> LoadedScene:
+    """Read or make a scene's mesh, if it has one.  Raises ``InputError``."""
+    chosen = parse_scene(scene)
+    return LoadedScene(chosen, mesh_of_scene(chosen))
+
+
 def make_display_list(
-    scene: str | Path,
+    scene: str | Path | LoadedScene,
     *,
     width: int | None = None,
     height: int | None = None,
@@ -70,7 +84,7 @@ def make_display_list(
     >>> teapot.name, teapot.display_list.triangles
     ('teapot:tessellation=2', 240)
     """
-    chosen = parse_scene(scene)
+    chosen = scene.scene if isinstance(scene, LoadedScene) else parse_scene(scene)
     if isinstance(chosen, DisplayListScene | HardCaseScene):
         given = {"width": width, "height": height, "sub_bits": sub_bits, "depth_bits": depth_bits}
         _refuse(chosen, "a display list is already projected and lit", camera, view, lighting, cull)
@@ -83,7 +97,7 @@ def make_display_list(
     )
     shade = check_shading(shading)
     behind = DEFAULT_BACKGROUND if background is None else background
-    mesh = mesh_of_scene(chosen)
+    mesh = scene.mesh if isinstance(scene, LoadedScene) else mesh_of_scene(chosen)
     if mesh is None:
         assert isinstance(chosen, BuiltInScene)
         _refuse(chosen, "its triangles are made on the screen", camera, view, lighting, cull)

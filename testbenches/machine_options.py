@@ -10,7 +10,7 @@ from ..golden.organisations.organisation_of import organisation_of
 from ..golden.planning.machine_plan import plan
 from ..golden.planning.presets import PRESETS
 from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
-from ..golden.scene_display_list import SceneDisplayList, make_display_list
+from ..golden.scene_display_list import LoadedScene, SceneDisplayList, make_display_list
 from ..golden.scenes.camera import View
 from ..golden.scenes.lighting import Lighting
 from ..golden.specification.card_order import merge_card, parse_cards
@@ -139,15 +139,18 @@ _FIELDS = [field.name for field in fields(MachineOptions)
            and field.name not in ("shading", "setup")]
 
 
-def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:
-    """The display list at the size that was asked for.  Raises ``InputError``."""
+def load_scene(scene: str | Path | LoadedScene, options: MachineOptions,
+               view: View | None = None) -> SceneDisplayList:
+    """The display list at the size that was asked for, seen as asked, or as ``view`` says.  Raises
+    ``InputError``."""
     settled = options.machine()
     width, height = settled.get("width"), settled.get("height")
-    if isinstance(parse_scene(scene), DisplayListScene | HardCaseScene) and options.size is None:
+    chosen = scene.scene if isinstance(scene, LoadedScene) else parse_scene(scene)
+    if isinstance(chosen, DisplayListScene | HardCaseScene) and options.size is None:
         width = height = None  # a display list has its own size, whatever the preset's
     return make_display_list(scene, width=width, height=height,
                              shading="flat" if options.shading == "flat" else "gouraud",
-                             **options.looking())
+                             **options.looking() | ({} if view is None else {"view": view}))
 
 
 def machine_for_scene(scene: str | Path, options: MachineOptions

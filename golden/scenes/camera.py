@@ -191,6 +191,16 @@ def framing_camera(mesh: Mesh, view: View = FRAMED) -> Camera:
     )
 
 
+def seen_direction(mesh: Mesh) -> tuple[float, float]:
+    """Azimuth and elevation in degrees, as in ``View``, from where a mesh asks to be seen."""
+    if mesh.eye_direction is None:
+        return AZIMUTH_DEGREES, ELEVATION_DEGREES
+    right, front, up = (float(axis @ _unit(np.array(mesh.eye_direction)))
+                        for axis in _level_axes(mesh.up))
+    return (math.degrees(math.atan2(right, front)),
+            math.degrees(math.asin(min(1.0, max(-1.0, up)))))
+
+
 def _level_axes(up: Vector) -> NDArray[np.float64]:
     """Unit vectors right, to the front, and up, of a scene with that direction up."""
     upwards = _unit(np.array(up))
