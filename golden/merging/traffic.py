@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 
 class Send(NamedTuple):
-    """``pixels`` pixels from one node to another, in one step of a merge; ``kept`` of them the
-    receiver stores, counted for a tree."""
+    """``pixels`` pixels from one node to another, in one step of a merge."""
 
     step: int
     sender: int
     receiver: int
     pixels: int
-    kept: int = 0
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,7 @@ class Traffic:
     def pieces(self) -> NDArray[np.int64]:
         """int64 (nodes - 1,): the pixels that pass over each piece of the backplane."""
         passed = np.zeros(max(0, self.nodes - 1), np.int64)
-        for _, sender, receiver, pixels, _ in self.sends:
+        for _, sender, receiver, pixels in self.sends:
             passed[min(sender, receiver):max(sender, receiver)] += pixels
         return passed
 

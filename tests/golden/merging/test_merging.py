@@ -163,7 +163,7 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
     _, traffic = MERGES[merge](pictures)
     drawn = np.array([picture.drawn for picture in pictures])
     pieces = np.zeros(nodes - 1, int)
-    for _, sender, receiver, pixels, _ in traffic.sends:
+    for _, sender, receiver, pixels in traffic.sends:
         for piece in range(min(sender, receiver), max(sender, receiver)):
             pieces[piece] += pixels
     np.testing.assert_array_equal(traffic.pieces, pieces)
