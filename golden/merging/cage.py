@@ -23,19 +23,26 @@ def sent_pixel_bits(configuration: MachineConfiguration) -> int:
     return bits
 
 
+def cage_pictures(configuration: MachineConfiguration,
+                  display_list: DisplayList) -> list[NodePicture]:
+    """What each node of a cage draws of a display list, at the cage's resolution.  Nodes draw
+    exactly."""
+    organisation = organisation_of(configuration)
+    return node_pictures(
+        display_list, organisation.shares(display_list.triangles),
+        order_bits=configuration.order_bits, shading=configuration.shading,
+        **organisation.resolution.shifts)
+
+
 def merge_cage(configuration: MachineConfiguration,
                display_list: DisplayList) -> tuple[NodePicture, Traffic]:
     """The merged picture, at the cage's resolution, and what its merge cards send for it.
 
-    Nodes draw exactly.  A chain sends, in each scan, every pixel of the video output, a tree what
-    was drawn, each with the place where it belongs.
+    A chain sends, in each scan, every pixel of the video output, a tree what was drawn, each with
+    the place where it belongs.
     """
-    organisation = organisation_of(configuration)
-    pictures = node_pictures(
-        display_list, organisation.shares(display_list.triangles),
-        order_bits=configuration.order_bits, shading=configuration.shading,
-        **organisation.resolution.shifts)
-    if organisation.merges_after_drawing:
+    pictures = cage_pictures(configuration, display_list)
+    if organisation_of(configuration).merges_after_drawing:
         picture, traffic = merge_tree(pictures)
         return picture, replace(traffic, pixel_bits=sent_pixel_bits(configuration))
     picture, traffic = merge_chain(pictures)

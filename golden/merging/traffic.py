@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 
 class Send(NamedTuple):
-    """``pixels`` pixels from one node to another, in one step of a merge; ``kept`` of them the
-    receiver stores, counted for a tree.  On a bus there is no one receiver."""
+    """``pixels`` pixels from one node to another, in one step of a merge; on a bus there is no one
+    receiver."""
 
     step: int
     sender: int
     receiver: int | None
     pixels: int
-    kept: int = 0
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ class Traffic:
     def pieces(self) -> NDArray[np.int64]:
         """int64 (nodes - 1,): the pixels that pass over each piece of the backplane."""
         passed = np.zeros(max(0, self.nodes - 1), np.int64)
-        for _, sender, receiver, pixels, _ in self.sends:
+        for _, sender, receiver, pixels in self.sends:
             if receiver is None:
                 passed += pixels
             else:

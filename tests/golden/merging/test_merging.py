@@ -165,7 +165,7 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
     _, traffic = MERGES[merge](pictures)
     drawn = np.array([picture.drawn for picture in pictures])
     pieces = np.zeros(nodes - 1, int)
-    for _, sender, receiver, pixels, _ in traffic.sends:
+    for _, sender, receiver, pixels in traffic.sends:
         ends = (0, nodes - 1) if receiver is None else sorted((sender, receiver))
         for piece in range(*ends):
             pieces[piece] += pixels
