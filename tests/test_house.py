@@ -23,7 +23,8 @@ WINGS = {
         "video", "nodes", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "reports", "render",
-        "comparison", "speed", "fpga", "precision", "cocotb_bench", "command_line", "studies"),
+        "comparison", "speed", "fpga", "precision", "figures", "cocotb_bench", "command_line",
+        "studies"),
     "package": ("__main__",),
 }
 ORDER = list(WINGS)

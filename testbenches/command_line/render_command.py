@@ -9,9 +9,9 @@ import click
 
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE, RenderOptions, prepare_render
+from ..support.progress import progress_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import machine_options
-from .progress import progress_bar
 from .tables.render_summary import render_summary
 
 #: Some minutes of simulation: say so before.

@@ -1,4 +1,4 @@
-"""What a scene is, by the measures of table 1, and what nodes send for it, as in figures 5 and 6."""
+"""What a scene is by the measures of table 1, and what nodes send for it, as in figures 5 and 6."""
 
 from __future__ import annotations
 
@@ -123,6 +123,14 @@ class SceneTraffic:
 
     def observed(self, nodes: int, assignment: str = ROUND_ROBIN) -> float:
         return self.ratio(self.curve(assignment).sent[NODES.index(nodes)])
+
+    def busiest(self, nodes: int, assignment: str = ROUND_ROBIN) -> float:
+        """The busiest node's part of all fragments."""
+        return self.curve(assignment).busiest[NODES.index(nodes)]
+
+    def among(self, nodes: int) -> float:
+        """What is expected, of ``expected_among``."""
+        return self.expected_among[NODES.index(nodes)]
 
     def reduction(self, nodes: int) -> float:
         """By how much snooping reduces the traffic of the straightforward merge, dealt out round

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...golden.organisations.shares import Shares
-from ...golden.reference.triangle_setup import outline
-from ...golden.specification.configuration import Packet
-from ...golden.specification.display_list import DisplayList
-from ...golden.specification.sampling_grid import Grid
+from ....golden.organisations.shares import Shares
+from ....golden.reference.triangle_setup import outline
+from ....golden.specification.configuration import Packet
+from ....golden.specification.display_list import DisplayList
+from ....golden.specification.sampling_grid import Grid
 
 Int64 = NDArray[np.int64]
 Float64 = NDArray[np.float64]
@@ -41,7 +41,8 @@ class Assignment:
 def packets(packet: Packet) -> Assignment:
     name = "contiguous" if packet == "contiguous" else (
         "round robin" if packet == 1 else f"packets of {packet}")
-    return Assignment(name, True, lambda listed, nodes: Shares(nodes, listed.triangles, packet).node)
+    return Assignment(name, True,
+                      lambda listed, nodes: Shares(nodes, listed.triangles, packet).node)
 
 
 def boxes(display_list: DisplayList) -> Float64:

@@ -14,17 +14,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...golden.cycles.broadcast import LIST_LATENCY
-from ...golden.cycles.cycle_model import predict_cycles
-from ...golden.merging.depth_order import DepthOrder
-from ...golden.planning.machine_plan import plan
-from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.display_list import DisplayList
-from ..support.measurement_cache import measured_once, package_hash
-from .assignments import ASSIGNMENTS
-from .figure_scenes import MESHES, FigureScene, Size
+from ....golden.cycles.broadcast import LIST_LATENCY
+from ....golden.cycles.cycle_model import predict_cycles
+from ....golden.merging.depth_order import DepthOrder
+from ....golden.planning.machine_plan import plan
+from ....golden.specification.configuration import MachineConfiguration
+from ....golden.specification.display_list import DisplayList
+from ...support.measurement_cache import measured_once, package_hash
+from ..figure_scenes import MESHES, FigureScene, Size
+from .assignment import ASSIGNMENTS
 
-NODE = {"cards": "PMM", "memory_ports": 2}
+NODE: dict[str, Any] = {"cards": "PMM", "memory_ports": 2}
 
 #: The cages of the map.
 MAP_NODES = (4, 16, 64)
