@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from .paper_table import paper_rows
-from .scene_traffic import NODES, SHUFFLED, SceneTraffic
+from .scene_traffic import CONTIGUOUS, NODES, SHUFFLED, SceneTraffic
 
 #: As many nodes as there are on the figures: where the plateau is.
 MOST = NODES[-1]
@@ -30,15 +30,48 @@ FLAT = 0.05
 
 @dataclass(frozen=True)
 class Verdict:
-    """A claim and one scene: whether it came out, and the numbers, in a sentence."""
+    """A claim and one scene: whether it came out, and the numbers, in words."""
 
     claim: str
     scene: str
     came_out: bool
     numbers: str
 
+    @property
+    def outcome(self) -> str:
+        return "Came out" if self.came_out else "Did not"
+
     def __str__(self) -> str:
-        return f"{self.claim} {'Came out' if self.came_out else 'Did not'}: {self.numbers}."
+        return f"{self.claim}  {self.outcome}: {self.numbers}."
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A claim and all scenes that it is about: on how many it came out, and on which it did not."""
+
+    claim: str
+    scenes: int
+    failed: Sequence[str]
+
+    @property
+    def came_out(self) -> bool:
+        return not self.failed
+
+    @property
+    def outcome(self) -> str:
+        if self.came_out:
+            return "Came out"
+        return "In part" if len(self.failed) < self.scenes else "Did not"
+
+    @property
+    def numbers(self) -> str:
+        if self.came_out and self.scenes == 1:
+            return "on the one scene that it is about"
+        return f"on {self.scenes - len(self.failed)} of {self.scenes} scenes" + (
+            f"; not on {', '.join(self.failed)}" if self.failed else "")
+
+    def __str__(self) -> str:
+        return f"{self.claim}  {self.outcome}: {self.numbers}."
 
 
 CLOSE = "Expected traffic is close to observed traffic."
@@ -47,7 +80,7 @@ EFFECTIVE = "At a depth above three traffic is reduced by a factor of two or mor
 LESS_DRAMATIC = "At a low depth traffic is reduced by less than a factor of two."
 PATHOLOGIC = "With the background first observed traffic exceeds expected traffic."
 RANDOMISED = "Assigning triangles at random brings it below what is expected."
-LATER = "A background that is sent last does not exceed it."
+LATER = "A background that the last processor has does not exceed it."
 PLATEAU = "Observed traffic grows before it reaches a plateau."
 FLAT_EXPECTED = "Expected traffic, which ignores local Z-buffering, is not exceeded on few nodes."
 
@@ -75,11 +108,15 @@ def _claims(scene: SceneTraffic) -> Iterator[tuple[str, bool, str]]:
             f"{scene.ratio(shuffled.most[-1]):.2f}, as the background's node happens to fall; "
             f"expected {expected:.2f}")
     else:
-        yield LATER, last <= expected, of_bound
+        contiguous = scene.observed(MOST, CONTIGUOUS)
+        yield LATER, contiguous <= expected, (
+            f"dealt out contiguously, so that it is sent last, it is {contiguous:.2f}, expected "
+            f"{expected:.2f}")
+        return
     grown = [later / before - 1 for before, later in pairwise(observed)]
     yield PLATEAU, grown[0] > FLAT >= abs(grown[-1]), (
-        f"the first doubling of the nodes adds {100 * grown[0]:.0f} %, the last one "
-        f"{100 * grown[-1]:.0f} %")
+        f"the first doubling of the nodes adds {round(100 * grown[0])} %, the last one "
+        f"{round(100 * grown[-1])} %")
     few = NODES[3]
     yield FLAT_EXPECTED, scene.observed(few) <= expected, (
         f"{scene.observed(few):.2f} on {few} nodes; with local Z-buffering "
@@ -101,16 +138,12 @@ def _reductions(scene: SceneTraffic) -> Iterator[tuple[str, bool, str]]:
         yield LESS_DRAMATIC, found < LOW_REDUCTION, numbers
 
 
-def summary(scenes: Sequence[SceneTraffic]) -> list[Verdict]:
-    """Each claim once, of all scenes together: it came out where it did of each."""
+def summary(scenes: Sequence[SceneTraffic]) -> list[Summary]:
+    """Each claim once, of all scenes together."""
     together: dict[str, list[Verdict]] = {}
     for scene in scenes:
         for verdict in claims_of(scene):
             together.setdefault(verdict.claim, []).append(verdict)
-    found = []
-    for claim, verdicts in together.items():
-        failed = [verdict.scene for verdict in verdicts if not verdict.came_out]
-        count = f"on {len(verdicts) - len(failed)} of {len(verdicts)} scenes"
-        numbers = count + (f"; not on {', '.join(failed)}" if failed else "")
-        found.append(Verdict(claim, "all", not failed, numbers))
-    return found
+    return [Summary(claim, len(verdicts), [verdict.scene for verdict in verdicts
+                                           if not verdict.came_out])
+            for claim, verdicts in together.items()]

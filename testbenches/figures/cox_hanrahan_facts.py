@@ -34,7 +34,7 @@ def cox_hanrahan_facts(found: CoxHanrahan) -> dict[str, Any]:
                      same among so many nodes); ``observed``: of each assignment sent, least, most,
                      over_least, busiest_node_share; ``claims``: claim, came_out, numbers
     ``area_of_equation_4``  a line
-    ``claims``       of all scenes together
+    ``claims``       of all scenes together: claim, scenes (how many), failed (which), came_out
     ``assignments``  maps: scene, nodes, times (assignment, keeps_order, draw, merge, in_turn,
                      overlapped, busiest, sent over the least); means: of each assignment against
                      round robin, in turn and overlapped; findings: lines
@@ -57,7 +57,7 @@ def cox_hanrahan_facts(found: CoxHanrahan) -> dict[str, Any]:
         "nodes": list(NODES),
         "traffic": [_traffic(scene) for scene in found.scenes],
         "area_of_equation_4": area_of_equation_4(),
-        "claims": [asdict(verdict) for verdict in summary(found.scenes)],
+        "claims": [asdict(claim) | {"came_out": claim.came_out} for claim in summary(found.scenes)],
         "assignments": _assignments(found.maps),
         "merges": [_merge(cost) for cost in found.merges],
         "points": [asdict(point) | {"equal": point.equal} for point in found.points],

@@ -12,6 +12,7 @@ import numpy as np
 from ...golden.scene_argument import BuiltInScene, parse_scene
 from ...golden.scene_display_list import make_display_list
 from ...golden.specification.display_list import DisplayList
+from ...golden.specification.errors import InputError
 from .paper_table import PaperRow, paper_rows
 
 #: Where a triangle behind all others stands in the list.
@@ -74,12 +75,22 @@ def with_background(display_list: DisplayList, place: Background) -> DisplayList
 def random_like(row: PaperRow, size: Size) -> str:
     """Random triangles of the row's mean size, by its counts, as many as make its depth."""
     count = max(1, round(row.found_depth * size[0] * size[1] / row.found_size))
-    side = math.sqrt(row.found_size / MEAN_AREA)
-    return f"random:n={count},size={side:.2f},seed={SEED}"
+    return f"random:n={count},size={_side(row):.2f},seed={SEED}"
+
+
+def _side(row: PaperRow) -> float:
+    """Of the square that each triangle lies in."""
+    return math.sqrt(row.found_size / MEAN_AREA)
 
 
 def figure_scenes(size: Size) -> list[FigureScene]:
-    """In the order of the page."""
+    """In the order of the page.  Raises ``InputError`` where the screen is smaller than what the
+    largest of the random triangles lie in."""
+    largest = max(paper_rows(), key=_side)
+    if _side(largest) > min(size):
+        least = math.ceil(_side(largest))
+        raise InputError(f"size: {size[0]}x{size[1]} is too small for triangles like those of "
+                         f"{largest.name}; take {least}x{least} at least")
     found = [FigureScene(name, scene) for name, scene in MESHES.items()]
     places: tuple[Background, ...] = ("first", "last")
     for row in paper_rows():

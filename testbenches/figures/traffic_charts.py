@@ -49,8 +49,8 @@ def _traffic(axes: Axes, scene: SceneTraffic, points: Sequence[Point]) -> None:
               label="maximum: every fragment")
     axes.plot(places, [scene.expected] * len(NODES), color=EXPECTED_COLOR, linestyle="--",
               label="expected, equation 4")
-    axes.plot(places, scene.expected_among, color=EXPECTED_COLOR, linewidth=1,
-              label="expected pixel by pixel, among n nodes")
+    axes.plot(places, scene.expected_among, color=EXPECTED_COLOR, linewidth=6, alpha=0.35,
+              label="expected pixel by pixel, among n nodes")  # behind what is observed
     for name, color in COLORS.items():
         curve = scene.curve(name)
         axes.plot(places, [scene.ratio(sent) for sent in curve.sent], color=color, marker="o",
@@ -64,7 +64,7 @@ def _traffic(axes: Axes, scene: SceneTraffic, points: Sequence[Point]) -> None:
                   markersize=8, markerfacecolor="none", linestyle="none",
                   color=COLORS[point.assignment], label="measured in RTL" if not number else None)
     _nodes_axis(axes)
-    axes.set_ylim(bottom=0.9)
+    axes.set_ylim(bottom=0.95)
     axes.set_ylabel("traffic over the least")
 
 

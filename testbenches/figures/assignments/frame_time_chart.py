@@ -39,7 +39,7 @@ def assignment_chart(maps: Sequence[AssignmentTimes]) -> str:
 def _fields(axes: Axes, maps: Sequence[AssignmentTimes], way: str) -> None:
     values = np.array([[getattr(time, way) / getattr(each.of(ROUND_ROBIN), way)
                         for time in each.times] for each in maps])
-    axes.imshow(np.log2(values), cmap="RdYlGn_r", vmin=-0.8, vmax=0.8, aspect="auto")
+    axes.imshow(np.log2(values), cmap="RdYlGn_r", vmin=-1.8, vmax=1.8, aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         axes.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=7.5,
                   color="#1c2330")
