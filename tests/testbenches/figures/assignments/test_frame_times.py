@@ -70,7 +70,7 @@ def test_means():
 
 
 def test_the_scenes_of_the_map_are_among_those_of_the_figures():
-    assert set(MAP_SCENES) <= {scene.name for scene in figure_scenes((64, 64))}
+    assert set(MAP_SCENES) <= {scene.name for scene in figure_scenes((128, 128))}
 
 
 def test_a_picture_that_no_node_holds():
