@@ -45,8 +45,8 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
     out.  Then which assignment of the triangles to the nodes makes a frame shortest, and what each
     kind of merge costs on sixteen nodes.
 
-    Writes PAPER.html, one page complete in itself, and PAPER.json to DIR.  What was measured is
-    kept: an interrupted run goes on where it was.
+    Writes PAPER.html, one page complete in itself, PAPER.json and PAPER.png, some of the figures,
+    to DIR.  What was measured is kept: an interrupted run goes on where it was.
 
     \b
     Examples:

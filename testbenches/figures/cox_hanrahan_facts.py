@@ -37,7 +37,7 @@ def cox_hanrahan_facts(found: CoxHanrahan) -> dict[str, Any]:
     ``claims``       of all scenes together: claim, scenes (how many), failed (which), came_out
     ``assignments``  maps: scene, nodes, times (assignment, keeps_order, draw, merge, in_turn,
                      overlapped, busiest, sent over the least); means: of each assignment against
-                     round robin, in turn and overlapped; findings: lines
+                     round robin: draw, in_turn, overlapped; findings: lines
     ``merges``       cards, scene, cage (as in ``comparison.json``), merge_card (luts, mhz; None
                      where not measured), cage_luts, fragments_per_clock,
                      fragments_per_clock_and_lut
@@ -95,8 +95,7 @@ def _assignments(maps: Sequence[AssignmentTimes]) -> dict[str, Any]:
         "maps": [{"scene": each.scene, "nodes": each.nodes, "times": [
             asdict(time) | {"in_turn": time.in_turn, "overlapped": time.overlapped}
             for time in each.times]} for each in maps],
-        "means": {name: {"in_turn": in_turn, "overlapped": overlapped}
-                  for name, (in_turn, overlapped) in means.items()},
+        "means": {name: mean._asdict() for name, mean in means.items()},
         "findings": assignment_findings(maps),
     }
 

@@ -1,4 +1,4 @@
-"""Writes what was redrawn of Cox and Hanrahan: one page, one JSON file."""
+"""Writes what was redrawn of Cox and Hanrahan: one page, one JSON file, a picture."""
 
 from __future__ import annotations
 
@@ -19,18 +19,23 @@ from .figure_tables import (
     table_1,
     traffic_table,
 )
-from .traffic_charts import traffic_chart
+from .traffic_charts import save_traffic_png, traffic_chart
 
 #: Everything that ``write_cox_hanrahan`` writes.
-FIGURE_FILES = (f"{PAPER}.html", f"{PAPER}.json")
+FIGURE_FILES = (f"{PAPER}.html", f"{PAPER}.json", f"{PAPER}.png")
+
+#: On the picture: as the paper expects, and the two ways in which it does not.
+PICTURE_SCENES = ("spheres", "tetra", "background first")
 
 
 def write_cox_hanrahan(found: CoxHanrahan, folder: Path) -> None:
     """Write ``FIGURE_FILES`` to ``folder``, which exists."""
     facts = cox_hanrahan_facts(found)
-    page, plain = FIGURE_FILES
+    page, plain, picture = FIGURE_FILES
     (folder / plain).write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     (folder / page).write_text(readable(cox_hanrahan_page(found, facts)), encoding="utf-8")
+    save_traffic_png([scene for scene in found.scenes if scene.name in PICTURE_SCENES],
+                     folder / picture)
 
 
 def cox_hanrahan_page(found: CoxHanrahan, facts: dict[str, Any]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .assignments.assignment import ASSIGNMENTS, NEAREST_WORK, ROUND_ROBIN
-from .assignments.frame_times import MAP_NODES, AssignmentTimes, mean_times
+from .assignments.frame_times import MAP_NODES, AssignmentTimes, MeanTimes, mean_times
 from .expected_traffic import evenly
 from .paper_table import PaperRow, paper_rows
 
@@ -31,9 +31,9 @@ def assignment_findings(maps: Sequence[AssignmentTimes]) -> list[str]:
         return []
     means = mean_times(maps, ROUND_ROBIN)
     kept = [assignment.name for assignment in ASSIGNMENTS if assignment.keeps_order]
-    best = min(kept, key=lambda name: means[name])
+    best = min(kept, key=lambda name: means[name].in_turn)
     packet = min((name for name in kept if not name.startswith("runs")),
-                 key=lambda name: means[name])
+                 key=lambda name: means[name].in_turn)
     lines = [
         f"Of those that keep the list's order, {best} makes the shortest frames: "
         f"{_part(means[best])}.  Of the packets it is {packet}: {_part(means[packet])}.",
@@ -55,10 +55,9 @@ def assignment_findings(maps: Sequence[AssignmentTimes]) -> list[str]:
     return lines
 
 
-def _part(mean: tuple[float, float]) -> str:
-    in_turn, overlapped = mean
-    return (f"{in_turn:.2f} of a frame by round robin where it is drawn and then merged, "
-            f"{overlapped:.2f} where both overlap")
+def _part(mean: MeanTimes) -> str:
+    return (f"{mean.in_turn:.2f} of a frame by round robin where it is drawn and then merged, "
+            f"{mean.overlapped:.2f} where both overlap, {mean.draw:.2f} of its drawing alone")
 
 
 def _least(maps: Sequence[AssignmentTimes], name: str) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from statistics import geometric_mean
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +56,14 @@ class FrameTime:
     def overlapped(self) -> int:
         """A frame of many, each merged while the next one is drawn."""
         return max(self.draw, self.merge)
+
+
+class MeanTimes(NamedTuple):
+    """Against another assignment: ``draw`` is a frame of a chain, which merges as it is scanned."""
+
+    draw: float
+    in_turn: float
+    overlapped: float
 
 
 @dataclass(frozen=True)
@@ -112,13 +120,12 @@ def draw_clocks(machine: MachineConfiguration, display_list: DisplayList,
         for each in range(nodes)))
 
 
-def mean_times(maps: Sequence[AssignmentTimes], against: str) -> dict[str, tuple[float, float]]:
-    """Of each assignment the frame time against that of ``against``, in turn and overlapped: the
-    geometric means over all maps."""
+def mean_times(maps: Sequence[AssignmentTimes], against: str) -> dict[str, MeanTimes]:
+    """Of each assignment, against those of ``against``; geometric means over all maps."""
     def compared(name: str, way: str) -> float:
         return geometric_mean([getattr(each.of(name), way) / getattr(each.of(against), way)
                                for each in maps])
 
-    return {assignment.name: (compared(assignment.name, "in_turn"),
-                              compared(assignment.name, "overlapped"))
+    return {assignment.name: MeanTimes(*(compared(assignment.name, way)
+                                         for way in MeanTimes._fields))
             for assignment in ASSIGNMENTS}

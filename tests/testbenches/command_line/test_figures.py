@@ -22,7 +22,6 @@ from cardcage.testbenches.figures.cox_hanrahan_facts import PAPER
 from cardcage.testbenches.figures.cox_hanrahan_page import FIGURE_FILES
 from cardcage.testbenches.figures.merge_costs import MergeCage
 from cardcage.testbenches.figures.paper_table import paper_rows
-from cardcage.testbenches.figures.traffic_charts import save_traffic_png
 
 FACTS = ["paper", "command_line", "size", "equal", "differences", "table", "paper_table",
          "contradictions", "nodes", "traffic", "area_of_equation_4", "claims", "assignments",
@@ -76,6 +75,7 @@ def test_files_and_facts(place):
     assert {each["scene"] for each in facts["assignments"]["maps"]} == {
         "teapot", "background first", "random as Wash.ht"}
     assert len(facts["contradictions"]) == 3
+    assert (place / "out/page/cox-hanrahan.png").read_bytes().startswith(b"\x89PNG")
     page = (place / "out/page/cox-hanrahan.html").read_text("utf-8")
     assert page.count("<svg") == len(names) + 1 and "http" not in page.replace(
         "http-equiv", "")
@@ -148,9 +148,3 @@ def test_every_step_is_told():
     found = redraw_cox_hanrahan(options, step=told.append)
     assert len(told) == expected_steps(options) == 4
     assert [scene.name for scene in found.scenes] == ["teapot", "random as Rad"]
-
-
-def test_a_picture_of_some_scenes(place):
-    options = FiguresOptions(size=(16, 16), simulate=False, scenes=["teapot"])
-    save_traffic_png(redraw_cox_hanrahan(options).scenes, place / "traffic.png")
-    assert (place / "traffic.png").read_bytes().startswith(b"\x89PNG")

@@ -61,12 +61,13 @@ def test_times_of_a_scene():
 def test_means():
     def times(scene, factor):
         return AssignmentTimes(scene, 4, [
-            FrameTime(each.name, True, 10 * (factor if number else 1), 0, 1.0, 1.0)
+            FrameTime(each.name, True, 10 * (factor if number else 1), 50, 1.0, 1.0)
             for number, each in enumerate(ASSIGNMENTS)])
 
     means = mean_times([times("one", 2), times("other", 8)], ASSIGNMENTS[0].name)
-    assert means[ASSIGNMENTS[0].name] == (1, 1)
-    assert means[ASSIGNMENTS[1].name] == pytest.approx((prod((2, 8)) ** 0.5,) * 2)
+    assert means[ASSIGNMENTS[0].name] == (1, 1, 1)
+    assert means[ASSIGNMENTS[1].name] == pytest.approx(
+        (4, prod((70 / 60, 130 / 60)) ** 0.5, prod((50 / 50, 80 / 50)) ** 0.5))
 
 
 def test_the_scenes_of_the_map_are_among_those_of_the_figures():
