@@ -13,9 +13,9 @@ from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE, RenderOptions, prepare_render
 from ..render_frames import FramesOptions, check_alone, prepare_frames
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
+from ..support.progress import busy, progress_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import machine_options
-from .progress import busy, progress_bar
 from .tables.render_summary import frames_summary, render_summary
 
 #: Some minutes of simulation: say so before.

@@ -20,9 +20,9 @@ from ..speed.machines import ALL_MACHINES, MachineAxes, bench_machines, varied
 from ..speed.speed_rows import bench, steps
 from ..speed.speed_table import bench_facts, bench_table, bench_text
 from ..support.atomic_output import atomic_file, output_errors
+from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT
 from .command_options import Several, view_options
-from .progress import step_bar
 
 #: The value of ``--engine`` that asks the cycle model only.
 MODEL = "model"
