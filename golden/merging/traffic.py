@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 
 class Send(NamedTuple):
-    """``pixels`` pixels from one node to another, in one step of a merge."""
+    """``pixels`` pixels from one node to another, in one step of a merge; on a bus there is no one
+    receiver."""
 
     step: int
     sender: int
-    receiver: int
+    receiver: int | None
     pixels: int
 
 
@@ -24,8 +25,8 @@ class Traffic:
     """All sends of a merge among ``nodes`` nodes side by side; each pixel of them is a word of
     ``pixel_bits``, 0 where no machine says how many.
 
-    A send takes every piece of the backplane between its two nodes; piece k lies between the
-    nodes k and k + 1.
+    A send takes every piece of the backplane between its two nodes, or all of it where it is for
+    everybody; piece k lies between the nodes k and k + 1.
     """
 
     nodes: int
@@ -63,7 +64,10 @@ class Traffic:
         """int64 (nodes - 1,): the pixels that pass over each piece of the backplane."""
         passed = np.zeros(max(0, self.nodes - 1), np.int64)
         for _, sender, receiver, pixels in self.sends:
-            passed[min(sender, receiver):max(sender, receiver)] += pixels
+            if receiver is None:
+                passed += pixels
+            else:
+                passed[min(sender, receiver):max(sender, receiver)] += pixels
         return passed
 
     @property

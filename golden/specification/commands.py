@@ -56,18 +56,21 @@ class ResponseKind(IntEnum):
     FRAGMENTS = 8  # per processing element: fragments tested since the frame start
     BUSY = 9  # per processing element: cycles it drew since the frame start
     ERROR = 10  # one of Fault
-    NODE = 11  # at boot, per node: its number and its memory units
-    NODES = 12  # at boot, where merge cards end nodes: how many there are
-    MERGED = 13  # where they do: cycles from the frame start to the merged picture
+    NODE = 11  # at boot, per node: its number, and the memory units it draws into
+    NODES = 12  # at boot, where there are nodes: how many
+    MERGED = 13  # where there are: cycles from the frame start to the merged picture
     SENT = 14  # per node: pixels its merge card has sent for the last picture
+    FRAME_UNITS = 15  # at boot, where nodes send to frame units: how many there are
+    TAKEN = 16  # per memory unit behind a direct merge: fragments it took since the frame start
+    FOLLOWED = 17  # of these, those whose pixel a fragment just ahead of them was to change
 
 
 class Fault(IntEnum):
     """The value of an ``ERROR`` response."""
 
     UNKNOWN_COMMAND = 1  # this opcode is not, or not yet, built in
-    UNITS_UNSUPPORTED = 2  # the number of memory units is no power of two, or shares that must
-    # be equal are not: nothing is drawn
+    UNITS_UNSUPPORTED = 2  # the number of memory units, or of frame units, is no power of two, or
+    # shares that must be equal are not, or frame units do not hold the picture: nothing is drawn
     NODES_DIFFER = 3  # nodes have different numbers of memory units: nothing is drawn
     LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
 
@@ -100,6 +103,9 @@ RESPONSE_FIELDS: dict[ResponseKind, Layout] = {
     ResponseKind.NODES: {"nodes": RESPONSE_VALUE_BITS},
     ResponseKind.MERGED: {"cycles": RESPONSE_VALUE_BITS},
     ResponseKind.SENT: {"pixels": RESPONSE_VALUE_BITS},
+    ResponseKind.FRAME_UNITS: {"units": RESPONSE_VALUE_BITS},
+    ResponseKind.TAKEN: {"fragments": RESPONSE_VALUE_BITS},
+    ResponseKind.FOLLOWED: {"fragments": RESPONSE_VALUE_BITS},
 }
 
 
@@ -124,12 +130,12 @@ def planes_layout(configuration: MachineConfiguration) -> Layout:
 
 
 def _round(configuration: MachineConfiguration) -> Layout:
-    """The round in which a triangle's node draws it; only where pixels keep an order."""
-    return {"round": configuration.order_bits} if configuration.order_bits else {}
+    """The round in which a triangle's node draws it; only where pixels keep it."""
+    return {"round": configuration.round_bits} if configuration.round_bits else {}
 
 
 def _node(configuration: MachineConfiguration) -> Layout:
-    """The node that draws a triangle; only where merge cards end nodes."""
+    """The node that draws a triangle; only where there are nodes."""
     return {"node": configuration.node_bits} if configuration.node_bits else {}
 
 

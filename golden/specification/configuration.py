@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Literal
 
-from .card_order import (
-    CHAIN_MERGE,
-    MAXIMUM_NODES,
-    MEMORY_UNIT,
-    PROCESSING_ELEMENT,
-    TREE_MERGE,
-    check_cards,
-    check_nodes,
-    domains,
-    merge_card,
-    node_cards,
-    parse_cards,
-)
+from .card_order import MAXIMUM_NODES, Cage, check_cards, check_merging, parse_cards
 from .display_list import coordinate_bits
 from .edge_widths import edge_column_bits, edge_fraction_bits, edge_height_bits
 from .errors import InputError
@@ -27,7 +16,13 @@ from .fixed_point import (
     on_screen_fraction_bits,
     stays_in_range,
 )
-from .interlace import MAXIMUM_BLOCK, Interlace, check_squares, interlace_for
+from .interlace import (
+    MAXIMUM_BLOCK,
+    Interlace,
+    check_diagonal,
+    check_squares,
+    interlace_for,
+)
 from .ranges import CHANNEL_BITS, FORMAT_RANGES, MAXIMUM_SIZE, check_whole
 from .shading import Shading
 from .video_timing import VideoTiming, video_timing
@@ -36,11 +31,16 @@ MAXIMUM_WORDS = 1 << 20  # of one memory unit
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
+SNOOP_TAG_BITS = 3  # the least where a picture is merged as well
 MAXIMUM_ORDER_BITS = 16  # 65,536 rounds of a packet for each node
 
 #: Triangles in a packet, or one packet for each node.
 Packet = int | Literal["contiguous"]
 MAXIMUM_PACKET = (1 << 31) - 1
+
+#: Fragments that can wait from a processing element to each memory unit, or one queue for all.
+Queue = int | Literal["element"]
+QUEUE_RANGE = (2, 4)
 
 #: Field → least and greatest value, besides ``FORMAT_RANGES``, where they depend on no other field.
 RANGES = {
@@ -62,7 +62,7 @@ RANGES = {
 
 
 @dataclass(frozen=True)
-class MachineConfiguration:
+class MachineConfiguration(Cage):
     """What the cards are built for.
 
     ``cards``             card order, left to right, spelled out or as ``4x(PMM)``
@@ -91,14 +91,17 @@ class MachineConfiguration:
                           each step, ``MAXIMUM_SETUP_INTERVAL`` one stage for all
     ``observe``           the machine also says, in each clock, what every processing element does
 
-    Where merge cards end nodes, that each draw a share of the triangles:
+    Where there are nodes, that each draw a share of the triangles:
 
     ``packet``         triangles that follow one another in the list and go to one node; 1 is round
                        robin, ``"contiguous"`` gives each node one run of the list
-    ``order_bits``     of a pixel's round, which keeps ties between nodes in the list's order; None
-                       means none for contiguous shares, else as many as a machine may have
+    ``order_bits``     beside a pixel's depth, which keep ties between nodes in the list's order:
+                       its round, and where fragments meet in memory its node below it.  None means
+                       as many as any list may need: for contiguous shares there are no rounds
     ``list_words``     triangles that the list memory of each node holds; 0 builds none
     ``maximum_nodes``  the largest number the node lines carry; 0 means what ``cards`` holds
+    ``queue``          where nodes merge directly: fragments that can wait from each processing
+                       element to each memory unit, or ``"element"``: one queue for all of them
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -149,6 +152,7 @@ class MachineConfiguration:
     order_bits: int = field(default=None)  # type: ignore[assignment]
     list_words: int = 0
     maximum_nodes: int = 0
+    queue: Queue = 2
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -162,9 +166,12 @@ class MachineConfiguration:
         if self.fraction_bits is None:
             fix("fraction_bits", on_screen_fraction_bits(self.width, self.height, self.sub_bits))
         self._check_packet()
+        check_merging(self.cards)
+        if self.maximum_nodes == 0:
+            fix("maximum_nodes", self.nodes)
         if self.order_bits is None:
             shared = self.nodes > 1 and self.packet != "contiguous"
-            fix("order_bits", MAXIMUM_ORDER_BITS if shared else 0)
+            fix("order_bits", MAXIMUM_ORDER_BITS if shared else self.node_order_bits)
         for name, (low, high) in RANGES.items():
             check_whole(name, getattr(self, name), low, high)
         if self.shading not in ("flat", "gouraud"):
@@ -177,15 +184,17 @@ class MachineConfiguration:
         most = edge_fraction_bits(self.edge_height_bits, self.height)
         check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
-        check_nodes(self.cards)
         if not self.allow_orphans:
             check_cards(self.cards)
         self._check_nodes()
-        check_squares(self.block, self._shares, skew=self.skew, orphans=self.allow_orphans)
+        check_squares(self.block, self.shares_of_units, skew=self.skew,
+                      orphans=self.allow_orphans)
+        if self.merges_directly:
+            check_diagonal(self.block, skew=self.skew)
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
                              square_bits=self.square_bits, share_bits=self.share_bits,
-                             skew=self.skew)
+                             skew=self.skew, diagonal=self.merges_directly)
             if full.words > MAXIMUM_WORDS:
                 raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
                                  f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
@@ -213,8 +222,6 @@ class MachineConfiguration:
             raise InputError(f"{error}, nor contiguous") from None
 
     def _check_nodes(self) -> None:
-        if self.maximum_nodes == 0:
-            object.__setattr__(self, "maximum_nodes", self.nodes)
         if not self.nodes <= self.maximum_nodes:
             raise InputError(f"maximum_nodes: the node lines carry {self.maximum_nodes}, the cage "
                              f"holds {self.nodes} nodes; leave it out, or take {self.nodes}")
@@ -224,6 +231,22 @@ class MachineConfiguration:
                     raise InputError(f"{name}: {getattr(self, name)} is for cages of nodes, and "
                                      f"{self.cards} has no merge card; end its nodes with one, as "
                                      "in 2x(PMMC), or leave it out")
+        if self.snoops and self.tag_bits < SNOOP_TAG_BITS:
+            raise InputError(f"tag_bits: {self.tag_bits} is too few where a picture is merged "
+                             f"while others are shown and drawn; take {SNOOP_TAG_BITS} at least")
+        if self.merges_directly and 0 < self.order_bits < self.node_order_bits:
+            raise InputError(f"order_bits: {self.order_bits} does not hold the number of one of "
+                             f"{self.maximum_nodes} nodes; take {self.node_order_bits} at least, "
+                             "or 0 where no two nodes tie")
+        self._check_queue()
+
+    def _check_queue(self) -> None:
+        if self.queue == "element":
+            return
+        try:
+            check_whole("queue", self.queue, *QUEUE_RANGE)
+        except InputError as error:
+            raise InputError(f"{error}, nor element") from None
 
     def _widest(self) -> dict[str, int]:
         """The widths at which every triangle of the guard band fits."""
@@ -234,44 +257,16 @@ class MachineConfiguration:
             "edge_height_bits": edge_height_bits(coordinate),
         }
 
-    # Cards
-
-    @property
-    def merge(self) -> str | None:
-        """The card that ends each node; None where the cage is all one node."""
-        return merge_card(self.cards)
-
-    @property
-    def node_cards(self) -> list[str]:
-        """The cards of each node, without the merge card."""
-        return node_cards(self.cards)
-
-    @property
-    def nodes(self) -> int:
-        return len(self.node_cards)
-
-    @property
-    def units(self) -> int:
-        """Memory units of a node."""
-        return max(node.count(MEMORY_UNIT) for node in self.node_cards)
-
-    @property
-    def _shares(self) -> set[int]:
-        """How many units processing elements have."""
-        return {units for node in self.node_cards for _, units in domains(node)}
-
-    @property
-    def processing_elements(self) -> int:
-        return self.cards.count(PROCESSING_ELEMENT)
+    # Backplane
 
     @property
     def id_bits(self) -> int:
         """ID lines on the backplane: enough for the total, not only the last unit's number."""
-        return self.maximum_units.bit_length()
+        return max(self.maximum_units, self.frame_units).bit_length()
 
     @property
     def node_bits(self) -> int:
-        """Node lines on the backplane: enough for the total; none where there is no merge card."""
+        """Node lines on the backplane: enough for the total; none where all is one node."""
         return 0 if self.merge is None else self.maximum_nodes.bit_length()
 
     @property
@@ -287,7 +282,15 @@ class MachineConfiguration:
     def _interlace_of(self, units: int) -> Interlace:
         return interlace_for(self.width, self.height, words=self.words, units=units,
                              square_bits=self.square_bits, share_bits=self.share_bits,
-                             skew=self.skew)
+                             skew=self.skew, diagonal=self.merges_directly)
+
+    @cached_property
+    def frame(self) -> MachineConfiguration:
+        """Of a cage of one node whose memory units are the frame units: these hold the picture as
+        those would, one word for each of its pixels."""
+        return replace(self, cards="P" + "M" * self.frame_units, words=0, maximum_units=0, block=1,
+                       skew=False, packet=1, order_bits=0, list_words=0, maximum_nodes=0,
+                       allow_orphans=True)
 
     @property
     def aligned_domains(self) -> bool:
@@ -323,7 +326,7 @@ class MachineConfiguration:
         """
         if self.block == 1:
             return 0
-        return max(1, *self._shares).bit_length() - 1
+        return max(1, *self.shares_of_units).bit_length() - 1
 
     @property
     def edges_on_screen(self) -> bool:
@@ -351,19 +354,20 @@ class MachineConfiguration:
         return self.depth_bits + self.order_bits
 
     @property
+    def node_order_bits(self) -> int:
+        """The node's part of an order, its lowest bits: only where fragments of different nodes
+        meet in memory, since merge cards know whose a pixel is."""
+        return (self.maximum_nodes - 1).bit_length() if self.merges_directly else 0
+
+    @property
+    def round_bits(self) -> int:
+        """The round's part of an order."""
+        return max(0, self.order_bits - self.node_order_bits)
+
+    @property
     def share_of_list_bits(self) -> int:
         """What a triangle's command says of its node and its round."""
-        return self.node_bits + self.order_bits
-
-    @property
-    def scans_rank(self) -> bool:
-        """Pictures are merged as they are scanned, so that the shown one has its depths as well."""
-        return self.merge == CHAIN_MERGE
-
-    @property
-    def sends_drawn(self) -> bool:
-        """Nodes send what they have drawn, and so know it."""
-        return self.merge == TREE_MERGE
+        return self.node_bits + self.round_bits
 
     @property
     def channel_plane_bits(self) -> int:

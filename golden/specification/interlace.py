@@ -16,6 +16,11 @@ element have its rows in turn.  Skewed, the bit is that one xor the lowest bit o
 that names no unit: they alternate along each row too, and the pixels of one of them
 are a lattice of which every other row is shifted by half its distance in x.
 
+Diagonally, for processing elements that each draw any pixel, n units hold n pixels side
+by side, and each row has the units of the row above moved along by ``diagonal_step``:
+unit = (x + step · y) mod n.  So elements that walk the rows of like triangles at the same
+time seldom need the same unit.
+
 Inside a unit the pixels lie row after row, ``pitch`` words to a row; the bits of x
 and y that name the unit are left out.
 """
@@ -48,10 +53,11 @@ class Interlace:
     of a highest-resolution address that do not exist in it.  ``square_bits``: log2 of the side of
     the squares in which processing elements interlace, of ``2**share_bits`` units each; both 0
     where all units interlace pixel by pixel, whomever they belong to.  ``skew``: the last bit of
-    the number is skewed; not in squares.
+    the number is skewed; not in squares.  ``diagonal``: none of these; each row begins at another
+    unit.
 
     Raises ``ValueError`` where there are fewer units than in a share, or fewer pixels in a square,
-    or squares are to be skewed.
+    or squares are to be skewed, or either is to be diagonal.
     """
 
     unit_bits: int
@@ -62,6 +68,7 @@ class Interlace:
     square_bits: int = 0
     share_bits: int = 0
     skew: bool = False
+    diagonal: bool = False
 
     def __post_init__(self) -> None:
         most = min(self.unit_bits, 2 * self.square_bits)
@@ -69,6 +76,8 @@ class Interlace:
             raise ValueError(f"share_bits must be 0 to {most}, not {self.share_bits}")
         if self.skew and self.square_bits:
             raise ValueError("skew wants square_bits 0: in squares units alternate along x already")
+        if self.diagonal and (self.square_bits or self.skew):
+            raise ValueError("diagonal wants neither skew nor squares")
 
     @property
     def units(self) -> int:
@@ -77,7 +86,9 @@ class Interlace:
     @property
     def bit_order(self) -> tuple[tuple[str, int], ...]:
         """Source of each bit of the unit number, most significant first: ``("x", 0)`` is x's
-        least significant bit.  ``skew_bit`` changes the last."""
+        least significant bit.  ``skew_bit`` changes the last, ``diagonal_step`` adds to all."""
+        if self.diagonal:
+            return tuple(("x", bit) for bit in reversed(range(self.unit_bits)))
         lattice_bits = self.unit_bits - self.share_bits
         order = [("xy"[place % 2], self.square_bits + place // 2) for place in range(lattice_bits)]
         if lattice_bits % 2:
@@ -89,6 +100,11 @@ class Interlace:
     def skew_bit(self) -> int | None:
         """The bit of x that is added (xor) to the last bit of the unit number; None adds none."""
         return self.x_unit_bits if self.skew and self.unit_bits else None
+
+    @property
+    def diagonal_step(self) -> int:
+        """Units by which each row is moved from the one above: an odd number near 3/8 of all."""
+        return (3 * self.units // 8) | 1 if self.diagonal else 0
 
     @property
     def x_unit_bits(self) -> int:
@@ -146,7 +162,7 @@ class Interlace:
         number = x * 0
         for axis, bit in self.bit_order:
             number = number * 2 + (((x if axis == "x" else y) >> bit) & 1)
-        return number ^ self._skewed(x)
+        return ((number ^ self._skewed(x)) + self.diagonal_step * y) & (self.units - 1)
 
     def address(self, x: Coordinate, y: Coordinate) -> Coordinate:
         return (_without(y, self.unit_mask("y")) * self.pitch
@@ -156,7 +172,7 @@ class Interlace:
         """The inverse of ``unit`` and ``address``; padding words give pixels off the picture."""
         x = _with_gaps(address % self.pitch, self.unit_mask("x"))
         y = _with_gaps(address // self.pitch, self.unit_mask("y"))
-        unit = unit ^ self._skewed(x)
+        unit = ((unit - self.diagonal_step * y) & (self.units - 1)) ^ self._skewed(x)
         for place, (axis, bit) in enumerate(reversed(self.bit_order)):
             value = ((unit >> place) & 1) << bit
             if axis == "x":
@@ -194,7 +210,7 @@ def _extent(size: int, mask: int) -> int:
 
 
 def interlace_for(width: int, height: int, *, words: int, units: int, square_bits: int = 0,
-                  share_bits: int = 0, skew: bool = False) -> Interlace:
+                  share_bits: int = 0, skew: bool = False, diagonal: bool = False) -> Interlace:
     """The interlace of ``units`` units (a power of two) of ``words`` words each.
 
     Where the memory does not hold ``width`` × ``height``, the picture is halved, y first, then
@@ -215,6 +231,7 @@ def interlace_for(width: int, height: int, *, words: int, units: int, square_bit
             square_bits=square_bits,
             share_bits=share_bits,
             skew=skew,
+            diagonal=diagonal,
         )
         if interlace.words <= words:
             return interlace
@@ -244,3 +261,11 @@ def check_squares(block: int, shares: Set[int], *, skew: bool, orphans: bool) ->
     if 1 << share_bits > block * block:
         raise InputError(f"{squares} do not spread over {1 << share_bits} memory units; make them "
                          "larger, or interlace pixel by pixel (1)")
+
+
+def check_diagonal(block: int, *, skew: bool) -> None:
+    """Raise ``InputError`` where units that interlace diagonally are to do so in another way."""
+    for name, asked in (("block", block > 1), ("skew", skew)):
+        if asked:
+            raise InputError(f"{name}: behind a direct merge memory units interlace diagonally; "
+                             "leave it out")

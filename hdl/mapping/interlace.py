@@ -11,13 +11,16 @@ __all__ = ["PixelAddress", "ScanAddress", "unit_number"]
 
 
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
-    """The number of the unit that holds pixel (x, y): some low bits of both, reordered."""
+    """The number of the unit that holds pixel (x, y): some low bits of both, reordered; where units
+    interlace diagonally, of x and of as many times y as units that each row is moved."""
     # A picture may have fewer rows or columns than there are units along them.
     axes = {axis: Cat(value, C(0, interlace.unit_mask(axis).bit_length()))
             for axis, value in (("x", x), ("y", y))}
     number = [axes[axis][bit] for axis, bit in reversed(interlace.bit_order)]
     if interlace.skew_bit is not None and interlace.skew_bit < len(x):
         number[0] ^= x[interlace.skew_bit]
+    if interlace.diagonal:
+        return (Cat(number) + y * interlace.diagonal_step)[:interlace.unit_bits]
     return Cat(number)
 
 

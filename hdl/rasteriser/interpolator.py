@@ -116,7 +116,7 @@ class Interpolator(wiring.Component):
 
     def _rank(self, m, depth, planes, moves, move):
         """Depth, and below it the order, where pixels keep one."""
-        if not self.configuration.order_bits:
+        if not self.configuration.round_bits:
             return depth
         return Cat(delayed(m, planes.round, moves, "round", enable=move), depth)
 

@@ -11,6 +11,7 @@ import pytest
 from cardcage.golden.merging.binary_swap import merge_binary_swap
 from cardcage.golden.merging.chain import merge_chain
 from cardcage.golden.merging.node_picture import merged, nearer, node_pictures
+from cardcage.golden.merging.snoop import merge_snoop
 from cardcage.golden.merging.ties import order_matters
 from cardcage.golden.merging.tree import merge_tree, tree_pairs
 from cardcage.golden.organisations.shares import Shares
@@ -19,7 +20,8 @@ from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.display_list import DisplayList
 
 WIDTH, HEIGHT = 37, 23
-MERGES = {"chain": merge_chain, "tree": merge_tree, "binary swap": merge_binary_swap}
+MERGES = {"chain": merge_chain, "tree": merge_tree, "binary swap": merge_binary_swap,
+          "snoop": merge_snoop}
 
 
 def all_tied(triangles=40, seed=5):
@@ -164,7 +166,8 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
     drawn = np.array([picture.drawn for picture in pictures])
     pieces = np.zeros(nodes - 1, int)
     for _, sender, receiver, pixels in traffic.sends:
-        for piece in range(min(sender, receiver), max(sender, receiver)):
+        ends = (0, nodes - 1) if receiver is None else sorted((sender, receiver))
+        for piece in range(*ends):
             pieces[piece] += pixels
     np.testing.assert_array_equal(traffic.pieces, pieces)
     assert traffic.busiest_piece == pieces.max()
@@ -176,6 +179,16 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
                 for group in ([1], [3], [5], [2, 3], [4, 5])]
         assert [send.pixels for send in traffic.sends] == sent
         assert traffic.steps == [max(sent[:3]), sent[3], sent[4]]
+    if merge == "snoop":
+        # As the paper words it: whoever has not sent listens, and deletes what is hidden.
+        left, sent = drawn.copy(), []
+        rank = np.array([(picture.picture.depth << 16) + picture.order for picture in pictures])
+        for node in range(nodes):
+            sent.append(int(left[node].sum()))
+            for listener in range(node + 1, nodes):
+                left[listener] &= ~(left[node] & (rank[node] <= rank[listener]))
+        assert traffic.sent == sent
+        assert traffic.pixels == sum(sent) == traffic.busiest_piece
     if merge == "binary swap":
         first = [drawn[1].sum(), drawn[3].sum()]
         groups = [drawn[:2].any(axis=0).ravel(), drawn[2:4].any(axis=0).ravel(),

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from cardcage.golden.specification.card_order import (
     MAXIMUM_CARDS,
     check_cards,
-    check_nodes,
+    check_merging,
     domains,
     merge_card,
     node_cards,
@@ -88,29 +88,42 @@ def test_groups_in_groups(order):
 
 
 @pytest.mark.parametrize("cards", ["PM", "PMMP", "PPM", "PMPMMM", "P" + "M" * 16,
-                                   "PMC", "PMMTPMMT", "PMMPMMCPMMMMC"])
+                                   "PMC", "PMMTPMMT", "PMMPMMCPMMMMC", "PMMSPMMSF", "PMMPMMSFFFF",
+                                   "PDM", "PPPDMMMM"])
 def test_machines(cards):
-    check_nodes(cards)
+    check_merging(cards)
     check_cards(cards)
 
 
 @pytest.mark.parametrize(("cards", "merge", "nodes"), [
     ("PMM", None, ["PMM"]), ("PMC", "C", ["PM"]), ("PMMPMMCPMC", "C", ["PMMPMM", "PM"]),
-    ("PMTPMT", "T", ["PM", "PM"]), ("PMCC", "C", ["PM", ""])])
+    ("PMTPMT", "T", ["PM", "PM"]), ("PMCC", "C", ["PM", ""]),
+    ("PMMSPMSFF", "S", ["PMM", "PM"]), ("PPPDMM", "D", ["P", "P", "P"])])
 def test_merge_cards_end_nodes(cards, merge, nodes):
     assert merge_card(cards) == merge
     assert node_cards(cards) == nodes
 
 
 @pytest.mark.parametrize(("cards", "message"), [
-    ("PMCPMT", r"C \(chain merge\) and T \(tree merge\) in one cage; end all .* of one kind"),
-    ("PMTPMC", r"C \(chain merge\) and T \(tree merge\) in one cage; end all .* of one kind"),
-    ("PMCPM", r"the last node is not ended; add a C \(chain merge\) at the right end"),
-    ("PMTP", r"the last node is not ended; add a T \(tree merge\) at the right end"),
+    ("PMCPMT", r"C \(chain merge\) and T \(tree merge\) in one cage; take merge .* of one kind"),
+    ("PMTPMC", r"C \(chain merge\) and T \(tree merge\) in one cage; take merge .* of one kind"),
+    ("PMSDF", r"S \(snoop .*\) and D \(direct merge\) in one cage; take merge .* of one kind"),
+    ("PMCPM", r"the last node is not ended; add a C \(chain merge\) at its right end"),
+    ("PMTP", r"the last node is not ended; add a T \(tree merge\) at its right end"),
+    ("PMSPMFF", r"the last node is not ended; add a S \(snoop merge\) at its right end"),
+    ("PMSPMS", r"no F \(frame unit\) at the right end, which nodes send .*; add some, as in .*FF"),
+    ("PMSFPMSF", r"F \(frame unit\) left of a node; put all of them at the right end, as in .*"),
+    ("PMF", r"F \(frame unit\) is for nodes that end in S \(snoop merge\); end all nodes so, .*"),
+    ("PMCF", r"F \(frame unit\) is for nodes that end in S \(snoop merge\); end all nodes so, .*"),
+    ("PMDM", r"memory units on the left of D \(direct merge\), .*; put all of them there, .*"),
+    ("PDMP", r"processing elements on the right of D \(direct merge\), .*; put all .*"),
+    ("DM", r"no processing element on the left of D \(direct merge\); add some, as in PPPPDMMMM"),
+    ("PD", r"no memory unit on the right of D \(direct merge\); add some, as in PPPPDMMMM"),
+    ("PDDM", r"2 of D \(direct merge\); take one, as in PPPPDMMMM"),
 ])
-def test_nodes_that_are_not_ended_alike(cards, message):
+def test_merge_cards_that_are_refused(cards, message):
     with pytest.raises(InputError, match=f"^cards: '{cards}': {message}$") as raised:
-        check_nodes(cards)
+        check_merging(cards)
     assert "\n" not in str(raised.value)
 
 
@@ -122,6 +135,8 @@ def test_nodes_that_are_not_ended_alike(cards, message):
     ("PMMCMPMC", r"^cards: node 1, 'MPM', has 1 memory unit\(s\) left of the first"),
     ("PMCPC", "^cards: node 1, 'P', has no memory unit; add an M to the right of a P$"),
     ("2x(PMMMC)", "^cards: 3 memory units are not supported yet; .* such as 2 or 4$"),
+    ("2x(PMS)FFF", "^cards: 3 frame units are not supported yet; .* such as 2 or 4$"),
+    ("PPDMMM", "^cards: 3 memory units are not supported yet; .* such as 2 or 4$"),
 ])
 def test_nodes_that_are_no_machines(cards, message):
     with pytest.raises(InputError, match=message) as raised:

@@ -186,10 +186,10 @@ def test_narrower_words():
 
 
 @pytest.mark.parametrize(("fields", "message"), [
-    ({"cards": "PMCPMT"}, r"^cards: .*C \(chain merge\) and T \(tree merge\) .*; end all nodes"),
+    ({"cards": "PMCPMT"}, r"^cards: .*C \(chain merge\) and T \(tree merge\) .*; take merge cards"),
     ({"cards": "PMCPM"}, r"^cards: .*the last node is not ended; add a C \(chain merge\)"),
     ({"cards": "PMCPMMC"}, "^cards: nodes of 1 and 2 memory units .*; give all nodes as many"),
-    ({"cards": "65x(PMT)"}, "^cards: 65 nodes, at most 64; end fewer of them, with more"),
+    ({"cards": "65x(PMT)"}, "^cards: 65 nodes, at most 64; take fewer, with more"),
     ({"packet": 0}, "^packet: 0 is not a whole number from 1 to [0-9]+, nor contiguous$"),
     ({"packet": "most"}, "^packet: 'most' is not a whole number from 1 to [0-9]+, nor contiguous$"),
     ({"order_bits": 17}, "^order_bits: 17 is not a whole number from 0 to 16$"),
@@ -200,6 +200,12 @@ def test_narrower_words():
        f"^{name}: 4 is for cages of nodes, and PMPM has no merge card; end its nodes with one, "
        r"as in 2x\(PMMC\), or leave it out$")
       for name in ("order_bits", "list_words", "maximum_nodes")),
+    ({"cards": "3x(PMS)F", "tag_bits": 2}, "^tag_bits: 2 is too few where a picture .*; take 3"),
+    ({"cards": "PPPDMM", "order_bits": 1}, "^order_bits: 1 does not hold .* 3 nodes; take 2 at le"),
+    ({"cards": "PPPDMM", "queue": 5}, "^queue: 5 is not a whole number from 2 to 4, nor element$"),
+    ({"cards": "PPPDMM", "queue": "none"}, "^queue: 'none' is not a whole .*, nor element$"),
+    ({"cards": "PPPDMM", "skew": True}, "^skew: behind a direct merge .*; leave it out$"),
+    ({"cards": "PPPDMM", "block": 4}, "^block: behind a direct merge .*; leave it out$"),
 ])
 def test_nodes_that_are_refused(fields, message):
     with pytest.raises(InputError, match=message) as raised:
@@ -224,6 +230,26 @@ def test_what_follows_from_nodes():
         assert (free.order_bits, free.rank_bits) == (0, 24)
     alone = MachineConfiguration("PMM", 16, 8)
     assert (alone.merge, alone.nodes, alone.node_bits, alone.order_bits) == (None, 1, 0, 0)
+
+
+def test_what_follows_from_snooping():
+    machine = MachineConfiguration("3x(PMMS)FFFF", 20, 8)
+    assert (machine.nodes, machine.units, machine.frame_units) == (3, 2, 4)
+    assert (machine.words, machine.frame.units, machine.frame.words) == (80, 4, 40)
+    assert machine.frame.interlace.width == 20 and machine.id_bits == 3
+    assert machine.snoops and machine.keeps_two_depths and not machine.scans_rank
+
+
+def test_what_follows_from_a_direct_merge():
+    machine = MachineConfiguration("5x(P)D8x(M)", 20, 8)
+    assert (machine.nodes, machine.units, machine.processing_elements) == (5, 8, 5)
+    assert (machine.words, machine.interlace.diagonal) == (3 * 8, True)
+    # An order is the round and, below it, the node.
+    assert (machine.order_bits, machine.node_order_bits, machine.round_bits) == (16, 3, 13)
+    once = MachineConfiguration("5x(P)D8x(M)", 20, 8, packet="contiguous")
+    assert (once.order_bits, once.round_bits) == (3, 0)
+    free = MachineConfiguration("5x(P)D8x(M)", 20, 8, order_bits=0)
+    assert (free.rank_bits, free.round_bits) == (24, 0)
 
 
 def test_presets():

@@ -12,7 +12,9 @@ SIZES = st.integers(1, 80)
 
 @st.composite
 def interlaces(draw):
-    """Pixel by pixel, skewed or not, or in squares of every side."""
+    """Pixel by pixel, skewed or not, diagonally, or in squares of every side."""
+    if draw(st.booleans()):
+        return Interlace(draw(st.integers(0, 6)), draw(SIZES), draw(SIZES), diagonal=True)
     unit_bits, square_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
     share_bits = draw(st.integers(0, min(unit_bits, 2 * square_bits)))
     return Interlace(unit_bits, draw(SIZES), draw(SIZES), square_bits=square_bits,
@@ -139,7 +141,7 @@ def test_bits_in_squares(unit_bits, square_bits, share_bits, order):
 
 
 @settings(deadline=None)
-@given(INTERLACES)
+@given(INTERLACES.filter(lambda interlace: not interlace.diagonal))
 def test_a_share_is_a_lattice_of_squares(interlace):
     side = 1 << interlace.square_bits
     across, down = (1 << bits for bits in interlace.stride_bits(interlace.share_bits))
@@ -190,6 +192,22 @@ def test_skewed_units_read_half_as_often_in_a_line():
     plain, skewed = (Interlace(5, 512, 512, skew=skew) for skew in (False, True))
     assert (plain.scan_reads, skewed.scan_reads) == (128, 64)
     assert plain.words == skewed.words
+
+
+@pytest.mark.parametrize(("unit_bits", "rows"), [
+    (1, [[0, 1, 0, 1], [1, 0, 1, 0]]),
+    (2, [[0, 1, 2, 3], [1, 2, 3, 0], [2, 3, 0, 1], [3, 0, 1, 2]]),
+    (3, [[0, 1, 2, 3], [3, 4, 5, 6], [6, 7, 0, 1]]),
+])
+def test_the_diagonal_tile_of_numbers(unit_bits, rows):
+    interlace = Interlace(unit_bits, 16, 16, diagonal=True)
+    assert [[interlace.unit(x, y) for x in range(4)] for y in range(len(rows))] == rows
+
+
+@pytest.mark.parametrize("fields", [{"skew": True}, {"square_bits": 1}])
+def test_a_diagonal_is_nothing_else(fields):
+    with pytest.raises(ValueError, match="diagonal wants neither skew nor squares"):
+        Interlace(2, 16, 16, diagonal=True, **fields)
 
 
 def test_squares_are_not_skewed():
