@@ -37,7 +37,7 @@ STEP_CLOCKS = 19
 HOP_CLOCKS = 1
 
 #: Places of a scan, equally far apart, at which a merge is tried where nobody knows when it begins.
-PHASES = 8
+PHASES = 4
 
 
 def predict_merge(configuration: MachineConfiguration, display_list: DisplayList,
