@@ -295,7 +295,7 @@ class MachineConfiguration(Cage):
     @property
     def aligned_domains(self) -> bool:
         """Every domain that draws is one aligned block of units, a power of two of them."""
-        return self.block > 1 or self.maximum_units <= 2
+        return self.block > 1 or self.maximum_units <= 2 or self.merges_directly
 
     # Widths: each with its reason
 

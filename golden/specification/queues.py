@@ -12,6 +12,11 @@ SPANS_WAITING = 16
 #: without fragments.
 FRAGMENTS_WAITING = 16
 
+#: Fragments of a processing element that can wait in the one queue it has before all units, where
+#: it has not one for each (``MachineConfiguration.queue``).  The first holds up the others, so more
+#: would not help.
+FRAGMENTS_OF_ELEMENT = 4
+
 #: Outlines of triangles that can wait for set-up in hardware: more than the pipeline that finds
 #: them is long, so that it can be full.
 OUTLINES_WAITING = 16

@@ -99,7 +99,8 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     """Judge ``simulation``, a frame of ``display_list`` drawn by a machine of ``configuration``.
 
     Colour is compared as it left the video pins, at the highest resolution; depth as it was read
-    back, if it was, at the machine's.  Raises ``InputError`` for a list that is too wide for the machine.
+    back, if it was, at the machine's.  Raises ``InputError`` for a list that is too wide for the
+    machine.
 
     >>> import cardcage
     >>> machine = cardcage.MachineConfiguration(cards="PM", width=16, height=16, fraction_bits=28)

@@ -22,8 +22,9 @@ _KEPT = 4
 class SceneFrames(Sequence[DisplayList]):
     """What ``scene`` looks like in each picture.
 
-    ``views``  how many pictures, and from where each is seen
-    ``first``  the first one's list, with the scene's name and notes
+    ``views``           how many pictures, and from where each is seen
+    ``first``           the first one's list, with the scene's name and notes
+    ``most_triangles``  of a list, of those that have been made
 
     ``frames``, ``turn`` and ``path`` are what was asked for: how many, degrees from one to the
     next, or a file of views.  A scene that is no mesh cannot be turned; it is drawn as often as
@@ -40,8 +41,16 @@ class SceneFrames(Sequence[DisplayList]):
         self._options = options
         self._loaded = read_scene(scene)
         self.views = _views(self._loaded, options, frames, turn, path)
+        self.most_triangles = 0
         self._made = lru_cache(_KEPT)(self._make)
         self.first: SceneDisplayList = self._made(0)
+
+    @property
+    def views_as_seen(self) -> list[View]:
+        """The same, with the direction from which a mesh asks to be seen, where none is said."""
+        mesh = self._loaded.mesh
+        return [view if view.direction or mesh is None else
+                replace(view, direction=seen_direction(mesh)) for view in self.views]
 
     def __len__(self) -> int:
         return len(self.views)
@@ -49,10 +58,16 @@ class SceneFrames(Sequence[DisplayList]):
     def __getitem__(self, number: Any) -> Any:
         if isinstance(number, slice):
             return [self[place] for place in range(*number.indices(len(self)))]
-        return self._made(range(len(self))[number]).display_list
+        return self.scene(range(len(self))[number]).display_list
+
+    def scene(self, number: int) -> SceneDisplayList:
+        """The display list of one picture, with its name."""
+        return self._made(number)
 
     def _make(self, number: int) -> SceneDisplayList:
-        return load_scene(self._loaded, self._options, self.views[number])
+        made = load_scene(self._loaded, self._options, self.views[number])
+        self.most_triangles = max(self.most_triangles, made.display_list.triangles)
+        return made
 
 
 def _views(loaded: LoadedScene, options: MachineOptions, frames: int | None, turn: float | None,

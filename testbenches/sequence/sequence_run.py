@@ -2,9 +2,9 @@
 
 A scan begins every so many clocks, from reset on, and a finished picture takes the place of the
 last one as a scan begins.  So picture i is on the video pins from the scan that follows its end,
-which is r scans after the first that begins after its ``FRAME_START``, r as ``FRAME_SHOWN`` says, up
-to the one before picture i + 1 has its first.  Where the host starts the next picture at once that
-is 1 + r scans, r the next one's.
+which is r scans after the first that begins after its ``FRAME_START``, r as ``FRAME_SHOWN`` says,
+up to the last one before the first of picture i + 1.  Where the host starts the next picture at
+once that is 1 + r scans, r the next one's.
 """
 
 from __future__ import annotations

@@ -196,8 +196,9 @@ def test_skewed_units_read_half_as_often_in_a_line():
 
 @pytest.mark.parametrize(("unit_bits", "rows"), [
     (1, [[0, 1, 0, 1], [1, 0, 1, 0]]),
-    (2, [[0, 1, 2, 3], [1, 2, 3, 0], [2, 3, 0, 1], [3, 0, 1, 2]]),
-    (3, [[0, 1, 2, 3], [3, 4, 5, 6], [6, 7, 0, 1]]),
+    (2, [[0, 1, 2, 3], [3, 0, 1, 2], [2, 3, 0, 1], [1, 2, 3, 0]]),
+    (3, [[0, 1, 2, 3], [5, 6, 7, 0], [2, 3, 4, 5]]),
+    (4, [[0, 1, 2, 3], [11, 12, 13, 14], [6, 7, 8, 9]]),
 ])
 def test_the_diagonal_tile_of_numbers(unit_bits, rows):
     interlace = Interlace(unit_bits, 16, 16, diagonal=True)
