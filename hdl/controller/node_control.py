@@ -198,6 +198,25 @@ class NodeControl(OneNode):
             m.next = "COMMAND"
 
 
+class DirectNodeControl(NodeControl):
+    """Nodes that share all memory units: these are counted on the ID lines, as where there is one
+    node, and every fragment is merged when all are drawn."""
+
+    def _count(self, m, controller):
+        """Nodes cannot differ."""
+
+    def all_units(self, controller):
+        return controller.total
+
+    def refused(self, controller):
+        return controller.unsupported_units
+
+    def fault(self, controller):
+        return Fault.UNITS_UNSUPPORTED
+
+
 def node_control(configuration: MachineConfiguration) -> OneNode:
     """What a machine's controller has."""
+    if configuration.merges_directly:
+        return DirectNodeControl(configuration=configuration)
     return NodeControl(configuration=configuration) if configuration.node_bits else OneNode()

@@ -11,6 +11,7 @@ from ..mapping.interlace import ScanAddress
 from ..wires import wires
 from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
+from .own_depth_test import OwnDepthTest
 from .send_part import SendPart
 from .tag_sweep import TagSweep
 from .two_port_memory import TwoPortMemory
@@ -52,6 +53,8 @@ class MemoryUnit(wiring.Component):
     pictures: In(PictureLines)
     merge: In(SendLines)
         Only where nodes merge in a tree (``SendPart``).
+    direct: In(FragmentLines)
+        Only where processing elements keep no pixels (``OwnDepthTest``).
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -61,20 +64,25 @@ class MemoryUnit(wiring.Component):
         self.memory: OnePortMemory | TwoPortMemory = kind(
             words=configuration.words, depth_bits=configuration.rank_bits,
             tag_bits=configuration.tag_bits, parts=self._parts)
-        self._send = SendPart(configuration=configuration) if configuration.sends_drawn else None
+        #: What the unit does besides in a cage of that kind, if anything.
+        self._besides: SendPart | OwnDepthTest | None = None
+        if configuration.sends_drawn:
+            self._besides = SendPart(configuration=configuration)
+        elif configuration.merges_directly:
+            self._besides = OwnDepthTest(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
             "scan": In(ScanLines(configuration)),
             "pictures": In(PictureLines(configuration)),
-            **({} if self._send is None else self._send.members),
+            **({} if self._besides is None else self._besides.members),
         })
 
     @property
     def storages(self) -> list[memory.Memory]:
         """The RAM of the words, and that which says which of them were drawn."""
-        drawn = [] if self._send is None else self._send.storages
+        drawn = [] if self._besides is None else self._besides.storages
         return [*self.memory.storages, *drawn]
 
     def elaborate(self, platform):
@@ -94,8 +102,8 @@ class MemoryUnit(wiring.Component):
                                if part.picture is not None])
         self._serve(m, number, current)
         self._sweep(m, current)
-        if self._send is not None:
-            self._send.add_to(m, self, *self._depth_read(current))
+        if self._besides is not None:
+            self._besides.add_to(m, self, *self._depth_read(current))
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))
