@@ -16,6 +16,7 @@ from ..golden.specification.configuration import (
     MAXIMUM_SETUP_INTERVAL,
     MachineConfiguration,
     Packet,
+    Queue,
 )
 from ..golden.specification.errors import InputError
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
@@ -54,6 +55,8 @@ class MachineOptions:
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     ``packet``            triangles of a packet for each node, or ``"contiguous"``
+    ``queue``             fragments that can wait from each processing element to each memory unit,
+                          or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
     ``list_words``        nodes have list memories of so many triangles
     """
@@ -71,6 +74,7 @@ class MachineOptions:
     skew: bool | None = None
     setup: SetupChoice | None = None
     packet: Packet | None = None
+    queue: Queue | None = None
     retain: bool | None = None
     list_words: int | None = None
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 class Send(NamedTuple):
     """``pixels`` pixels from one node to another, in one step of a merge; ``kept`` of them the
-    receiver stores, counted for a tree.  On a bus there is no one receiver."""
+    receiver stores, counted for a tree.  On a bus there is no one receiver: all hear them, and the
+    frame units right of the last node store them."""
 
     step: int
     sender: int
@@ -27,7 +28,8 @@ class Traffic:
     ``pixel_bits``, 0 where no machine says how many.
 
     A send takes every piece of the backplane between its two nodes, or all of it where it is for
-    everybody; piece k lies between the nodes k and k + 1.
+    everybody; piece k lies between the nodes k and k + 1, on a bus the last one between the last
+    node and the frame units.
     """
 
     nodes: int
@@ -62,8 +64,10 @@ class Traffic:
 
     @property
     def pieces(self) -> NDArray[np.int64]:
-        """int64 (nodes - 1,): the pixels that pass over each piece of the backplane."""
-        passed = np.zeros(max(0, self.nodes - 1), np.int64)
+        """int64 (nodes - 1,), one more on a bus: the pixels that pass over each piece of the
+        backplane."""
+        bus = any(send.receiver is None for send in self.sends)
+        passed = np.zeros(self.nodes - 1 + bus, np.int64)
         for _, sender, receiver, pixels, _ in self.sends:
             if receiver is None:
                 passed += pixels

@@ -65,10 +65,9 @@ class HostBroadcast(Organisation):
 
     @cached_property
     def read_back(self) -> tuple[Int64, Int64]:
-        """The units and the words whose depths ``READ_DEPTH`` sends: unit after unit of every
-        domain, addresses ascending."""
-        units = np.concatenate([np.arange(first, first + count)
-                                for _, first, count in self.domains])
+        """The units and the words whose depths ``READ_DEPTH`` sends: unit after unit, but for those
+        of nobody, addresses ascending."""
+        units = np.flatnonzero(self.owners[0] >= 0)
         return units.repeat(self.words), np.tile(np.arange(self.words), len(units))
 
     @property
@@ -115,11 +114,7 @@ class HostBroadcast(Organisation):
 
     @property
     def scan_tile(self) -> Int64:
-        interlace = self._interlace
-        columns = 1 << max((interlace.skew_bit or 0) + 1, interlace.unit_mask("x").bit_length())
-        rows = 1 << interlace.unit_mask("y").bit_length()
-        y, x = np.mgrid[:rows, :columns]
-        return np.asarray(self.unit(x, y))
+        return self._interlace.tile
 
     @property
     def scan_group(self) -> int:

@@ -14,7 +14,7 @@ from .organisation_of import organisation_of
 FOLLOWING: dict[str, Callable[[MachineConfiguration, Organisation], Any]] = {
     "organisation": lambda configuration, organisation: organisation.name,
     "nodes": lambda configuration, organisation: organisation.nodes,
-    "memory_units": lambda configuration, organisation: sum(organisation.node_units),
+    "memory_units": lambda configuration, organisation: organisation.memory_units,
     "processing_elements": lambda configuration, organisation: configuration.processing_elements,
     "picture_width": lambda configuration, organisation: organisation.resolution.width,
     "picture_height": lambda configuration, organisation: organisation.resolution.height,

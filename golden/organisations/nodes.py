@@ -1,4 +1,5 @@
-"""Cages of nodes: each draws a share of the triangles into a picture of its own."""
+"""Cages of nodes: each draws a share of the triangles into a picture of its own, which merge cards
+end."""
 
 from __future__ import annotations
 
@@ -118,6 +119,10 @@ class TreeOfNodes(Nodes):
 
     name = "tree of nodes"
     merges_after_drawing = True
+
+    @property
+    def merge_steps(self) -> int:
+        return (self.nodes - 1).bit_length()
 
     def is_scanned(self, node: int) -> bool:
         return node == 0

@@ -93,7 +93,7 @@ class Organisation(ABC):
     #: What reports and ``machine.json`` call it.
     name: ClassVar[str]
 
-    #: Merge cards end nodes, which the cage reports at boot, and whose pictures it merges.
+    #: It has nodes, which it reports at boot, and makes one picture of what they draw.
     merges: ClassVar[bool] = False
 
     #: That is done when drawing is, and takes clocks of its own.
@@ -122,7 +122,7 @@ class Organisation(ABC):
     @property
     @abstractmethod
     def node_units(self) -> tuple[int, ...]:
-        """Memory units of each node; a node keeps a picture of its own."""
+        """Memory units that each node draws into."""
 
     @property
     @abstractmethod
@@ -218,8 +218,13 @@ class Organisation(ABC):
 
     @property
     def merge_steps(self) -> int:
-        """Steps of merging after drawing; 0 where none is."""
-        return (self.nodes - 1).bit_length() if self.merges_after_drawing else 0
+        """Steps of merging after drawing, one after another; 0 where none is."""
+        return 0
+
+    @property
+    def memory_units(self) -> int:
+        """Those that anybody draws into, and those of nobody."""
+        return sum(self.node_units)
 
     @property
     def units(self) -> int:

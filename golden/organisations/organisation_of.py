@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ..specification.card_order import CHAIN_MERGE, TREE_MERGE
+from ..specification.card_order import CHAIN_MERGE, DIRECT_MERGE, SNOOP_MERGE, TREE_MERGE
 from ..specification.configuration import MachineConfiguration
+from .direct_elements import DirectElements
 from .host_broadcast import HostBroadcast
 from .nodes import ChainedNodes, TreeOfNodes
 from .organisation import Organisation
+from .snooped_nodes import SnoopedNodes
 
-#: By the card that ends the nodes of a cage.
+#: By the merge card of a cage.
 ORGANISATIONS: dict[str | None, type[Organisation]] = {
-    None: HostBroadcast, CHAIN_MERGE: ChainedNodes, TREE_MERGE: TreeOfNodes}
+    None: HostBroadcast, CHAIN_MERGE: ChainedNodes, TREE_MERGE: TreeOfNodes,
+    SNOOP_MERGE: SnoopedNodes, DIRECT_MERGE: DirectElements}
 
 
 @lru_cache(maxsize=64)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property, partial
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from ..merging.ties import order_matters
+from ..merging.ties import nodes_tie, order_matters
 from ..organisations.organisation_of import organisation_of
 from ..organisations.shares import Shares
 from ..reference import bit_true, exact
@@ -20,6 +20,7 @@ from ..specification.configuration import (
 )
 from ..specification.display_list import DisplayList
 from ..specification.errors import InputError
+from ..specification.picture import Picture
 from ..specification.sampling_grid import Grid
 
 
@@ -41,7 +42,7 @@ class NodeNeeds:
 
     The list is in the formats of the machine, and exact from ``exact_fraction_bits`` on; what the
     machine has of the fields that are asked for here does not matter.  Drawing, which is what
-    ``ties`` takes, is put off until it is asked for.
+    ``ties`` and ``meets`` take, is put off until it is asked for.
     """
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
@@ -55,31 +56,41 @@ class NodeNeeds:
     def shares(self) -> Shares:
         return organisation_of(self._configuration).shares(self._display_list.triangles)
 
+    def _draw(self, display_list: DisplayList) -> Picture:
+        """As the machine does: where its depths err a little so do its ties.  The winners count,
+        and no colours."""
+        if self._exact:
+            return exact.draw(display_list, shading="flat", **self._shifts)
+        return bit_true.draw(display_list, fraction_bits=self._configuration.fraction_bits,
+                             shading="flat", **self._shifts)
+
     @cached_property
     def ties(self) -> bool:
-        """Without an order some pixel would go to another triangle.
+        """Without a round some pixel would go to another triangle."""
+        return order_matters(self._display_list, self.shares, self._draw)
 
-        Where the machine's depths err a little so do its ties.
-        """
-        # The winners count, and no colours.
-        draw = (partial(exact.draw, shading="flat", **self._shifts) if self._exact else
-                partial(bit_true.draw, fraction_bits=self._configuration.fraction_bits,
-                        shading="flat", **self._shifts))
-        return order_matters(self._display_list, self.shares, draw)
+    @cached_property
+    def meets(self) -> bool:
+        """Fragments of different nodes meet in memory, and tie where they are seen."""
+        return self._configuration.node_order_bits > 0 and nodes_tie(
+            self._display_list, self.shares, self._draw)
 
     @property
     def order_bits(self) -> int:
         """The fewest; ``InputError`` where they are more than a machine may have."""
-        if not self.ties:
+        node_bits, shares = self._configuration.node_order_bits, self.shares
+        if node_bits and not self.meets:
             return 0
-        shares = self.shares
-        if shares.order_bits > MAXIMUM_ORDER_BITS:
-            fewest = -(-shares.triangles // (shares.nodes << MAXIMUM_ORDER_BITS))
+        if not self.ties:
+            return node_bits
+        most = MAXIMUM_ORDER_BITS - node_bits
+        if shares.order_bits > most:
+            fewest = -(-shares.triangles // (shares.nodes << most))
             raise InputError(
                 f"packet: {shares.packet} makes {shares.rounds:,} rounds, at most "
-                f"{1 << MAXIMUM_ORDER_BITS:,} keep ties between nodes in order; take {fewest} at "
+                f"{1 << most:,} keep ties between nodes in order; take {fewest} at "
                 "least, or contiguous")
-        return shares.order_bits
+        return node_bits + shares.order_bits
 
     @cached_property
     def list_words(self) -> int:
@@ -95,11 +106,16 @@ class NodeNeeds:
 
     def lacks(self, configuration: MachineConfiguration) -> Iterator[Lack]:
         """What that machine, which differs only in the fields asked for here, has too few of."""
-        shares, remedy = self.shares, "take --packet contiguous, or export a machine for this list"
-        if 0 < configuration.order_bits < shares.order_bits:
-            yield Lack("order_bits", shares.order_bits, f"for {shares.rounds:,} rounds", remedy)
-        if configuration.order_bits == 0 and self.ties:
-            yield Lack("order_bits", shares.order_bits, "since nodes tie", remedy)
+        shares = self.shares
+        most = configuration.node_order_bits + shares.order_bits
+        if 0 < configuration.round_bits < shares.order_bits:
+            yield self._lacks_order(most, f"for {shares.rounds:,} rounds")
+        elif configuration.order_bits < most and configuration.order_bits < self.order_bits:
+            yield self._lacks_order(self.order_bits, "since nodes tie")
         if 0 < configuration.list_words < self.list_words:
             yield Lack("list_words", self.list_words, "for the largest share",
                        "export a machine for this list")
+
+    def _lacks_order(self, needed: int, reason: str) -> Lack:
+        contiguous = "take --packet contiguous, or " if self.shares.rounds > 1 else ""
+        return Lack("order_bits", needed, reason, f"{contiguous}export a machine for this list")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..organisations.shares import Shares
 from ..specification.commands import list_word_bits
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
@@ -43,21 +44,29 @@ def check_given(planned: MachineConfiguration, nodes: NodeNeeds) -> None:
 def lines_of_nodes(planned: MachineConfiguration, full: MachineConfiguration, nodes: NodeNeeds,
                    given: int | None) -> list[PlanLine]:
     """The lines; ``given`` is an order that was asked for."""
-    shares = nodes.shares
-    if given is not None:
-        reason = "asked for"
-    elif shares.rounds == 1:
-        reason = "each node draws one run of the list, so that ties go to the lower one"
-    elif planned.order_bits:
-        reason = f"nodes tie at some pixel, and have {shares.rounds:,} rounds of a packet each"
-    else:
-        reason = "no tie between nodes goes to a higher one"
+    reason = "asked for" if given is not None else _order_reason(planned, nodes.shares)
     lines = [PlanLine("order bits", str(planned.order_bits), str(full.order_bits), reason,
-                      full.order_bits - planned.order_bits)]
+                      full.round_bits - planned.round_bits)]
     if planned.list_words:
         bits = list_word_bits(planned)
         lines.append(PlanLine(
             "list words", f"{planned.list_words:,}", "-",
-            f"the largest of {shares.nodes} shares has {nodes.list_words:,} triangles that may "
+            f"the largest of {planned.nodes} shares has {nodes.list_words:,} triangles that may "
             f"cover a pixel; {bits} bits each, {planned.list_words * bits:,} in each node"))
     return lines
+
+
+def _order_reason(planned: MachineConfiguration, shares: Shares) -> str:
+    """What decides how many bits of order were planned."""
+    rounds = f"{shares.rounds:,} rounds of a packet each"
+    if planned.node_order_bits:
+        if not planned.order_bits:
+            return "no two nodes tie where they are seen"
+        return ("nodes tie at some pixel, where their fragments come in any order: "
+                f"{planned.node_order_bits} for the node" + (
+                    f", the rest for {rounds}" if planned.round_bits else ""))
+    if shares.rounds == 1:
+        return "each node draws one run of the list, so that ties go to the lower one"
+    if planned.order_bits:
+        return f"nodes tie at some pixel, and have {rounds}"
+    return "no tie between nodes goes to a higher one"

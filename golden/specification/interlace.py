@@ -138,6 +138,15 @@ class Interlace:
         return _extent(self.width, self.unit_mask("x") | skewed)
 
     @property
+    def tile(self) -> NDArray[np.int64]:
+        """int64 (rows, columns): the unit of each pixel of a piece that repeats over the
+        picture."""
+        columns = 1 << max((self.skew_bit or 0) + 1, self.unit_mask("x").bit_length())
+        rows = self.units if self.diagonal else 1 << self.unit_mask("y").bit_length()
+        y, x = np.mgrid[:rows, :columns]
+        return np.asarray(self.unit(x, y))
+
+    @property
     def rows(self) -> int:
         return _extent(self.height, self.unit_mask("y"))
 

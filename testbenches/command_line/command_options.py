@@ -10,7 +10,12 @@ import click
 
 from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
-from ...golden.specification.configuration import MAXIMUM_PACKET, MAXIMUM_WORDS, RANGES
+from ...golden.specification.configuration import (
+    MAXIMUM_PACKET,
+    MAXIMUM_WORDS,
+    QUEUE_RANGE,
+    RANGES,
+)
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
 from ..machine_options import SETUPS
@@ -53,6 +58,7 @@ class NumberOr(click.ParamType):
 
 FRACTION_BITS = NumberOr("exact", 0, MAX_FRACTION_BITS)
 PACKET = NumberOr("contiguous", 1, MAXIMUM_PACKET)
+QUEUE = NumberOr("element", *QUEUE_RANGE)
 
 
 class Several(click.ParamType):
@@ -113,8 +119,12 @@ _FURTHER_OPTIONS = (
 
 _NODE_OPTIONS = (
     click.option("--packet", type=PACKET, metavar="N|contiguous",
-                 help="Where merge cards end nodes: how many triangles that follow one another go "
+                 help="Where there are merge cards: how many triangles that follow one another go "
                  "to one node, or one run of the list for each node.  [default: 1]"),
+    click.option("--queue", type=QUEUE, metavar="N|element",
+                 help="Where nodes merge directly (D): how many fragments can wait from each "
+                 "processing element to each memory unit, or one queue for each element.  "
+                 "[default: 2]"),
     click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
                  help="Triangles that each list memory holds; gives nodes one, like --retain.  "
                  "[default: what the scene needs]"),

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
+from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.machine_plan import plan
@@ -66,7 +67,7 @@ class Refused:
 class NodeFigures:
     """What one node did for a picture, in the machine's own count, and golden's.
 
-    ``sent``  pixels to the next node, or to the pins
+    ``sent``  pixels to the next node, to frame units, to memory units, or to the pins
     """
 
     fragments: int
@@ -150,7 +151,8 @@ class CageJob:
                                    for send in golden.sends]),
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
-            [*_picture_differences(comparison, frames), *_count_differences(nodes)],
+            [*_picture_differences(comparison, frames), *_count_differences(nodes),
+             *_unit_differences(simulation, golden)],
             [*resolution_warnings(configuration), *simulation.notes])
 
 
@@ -158,7 +160,7 @@ def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
            simulation: Simulation, golden: Traffic) -> list[NodeFigures]:
     organisation = organisation_of(configuration)
     sent, golden_sent = simulation.sent or [0], golden.sent
-    if organisation.merges and not organisation.merges_after_drawing:  # the last one's: to the pins
+    if configuration.scans_rank:  # the last one's: to the pins
         golden_sent[-1] = configuration.width * configuration.height
     return [NodeFigures(
         fragments=sum(work.fragments for work in simulation.work if work.node == node),
@@ -189,3 +191,10 @@ def _count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
                 ("drew", "fragments", node.fragments, node.golden_fragments),
                 ("sent", "pixels", node.sent, node.golden_sent))
             if got != wanted]
+
+
+def _unit_differences(simulation: Simulation, golden: Traffic) -> list[str]:
+    wanted = golden.taken.sum(axis=0).tolist() if isinstance(golden, DirectTraffic) else []
+    return [f"memory unit {unit} took {got:,} fragments, golden {of_golden:,}"
+            for unit, (got, of_golden) in enumerate(zip(simulation.taken, wanted, strict=True))
+            if got != of_golden]

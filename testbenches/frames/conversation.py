@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ...golden.organisations.organisation import Organisation
+from ...golden.organisations.organisation import Domain, Organisation
 from ...golden.specification.commands import (
     Fault,
     Opcode,
@@ -29,21 +29,36 @@ def owed_at_boot(organisation: Organisation) -> list[Owed]:
 
 
 def _boot(organisation: Organisation) -> Iterator[Owed]:
-    for number, node in enumerate(organisation.each):
-        for domain in node.domains:
-            yield _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
-        if organisation.merges:
-            yield _report(ResponseKind.NODE, node=number, units=node.units)
+    yield from _cards(organisation)
     yield _report(ResponseKind.UNITS, owned=organisation.owned_units,
-                  total=sum(organisation.node_units))
+                  total=organisation.memory_units)
     if organisation.merges:
         yield _report(ResponseKind.NODES, nodes=organisation.nodes)
+    if organisation.configuration.snoops:
+        yield _report(ResponseKind.FRAME_UNITS, units=organisation.configuration.frame_units)
     if organisation.fault is not None:
         yield Owed(ResponseKind.ERROR, organisation.fault)
         return
     width, height, *_ = organisation.resolution
     yield _report(ResponseKind.PICTURE, width=width, height=height)
     yield Owed(ResponseKind.BOOTED)
+
+
+def _cards(organisation: Organisation) -> Iterator[Owed]:
+    """From left to right: each element its domain, each merge card its node; where elements have
+    all units together they are nodes, and the merge card has the domain."""
+    direct = organisation.configuration.merges_directly
+    for number, node in enumerate(organisation.each):
+        for domain in [] if direct else node.domains:
+            yield _domain(domain)
+        if organisation.merges:
+            yield _report(ResponseKind.NODE, node=number, units=node.units)
+    if direct:
+        yield _domain(organisation.domains[0])
+
+
+def _domain(domain: Domain) -> Owed:
+    return _report(ResponseKind.DOMAIN, first=domain.first, units=domain.units)
 
 
 def _report(kind: ResponseKind, **fields: int) -> Owed:
@@ -79,12 +94,14 @@ def _silent(organisation: Organisation) -> list[Opcode]:
 
 
 def _counters(organisation: Organisation) -> list[Owed]:
-    """From left to right: of each processing element, and of each node that is merged."""
-    owed = []
+    """From left to right: of each processing element, of each node that sends what it drew, and of
+    each memory unit that takes its fragments from all elements."""
+    direct, owed = organisation.configuration.merges_directly, []
     for node in organisation.each:
         owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * len(node.domains)
-        owed += [Owed(ResponseKind.SENT)] * organisation.merges
-    return owed
+        owed += [Owed(ResponseKind.SENT)] * (organisation.merges and not direct)
+    units = organisation.memory_units if direct else 0
+    return owed + [Owed(ResponseKind.TAKEN), Owed(ResponseKind.FOLLOWED)] * units
 
 
 def responses_owed(organisation: Organisation, words: Sequence[int]) -> int:

@@ -51,7 +51,11 @@ class Simulation:
     ``boot_cycles``      reset to ready
     ``draw_cycles``      frame start to the last processing element's done
     ``merge_cycles``     frame start to the merged picture; None where merge cards end no nodes
-    ``sent``             pixels that each node's merge card sent, in its own count
+    ``sent``             pixels that each node's merge card sent, in its own count; where elements
+                         have no pixels, their fragments
+    ``taken``            fragments that each memory unit took from all processing elements, in its
+                         own count; empty where it belongs to one
+    ``followed``         those of them whose pixel a fragment just ahead of them was to change
     ``repeated_scans``   scans that began with the old picture since the frame start
     ``scans``            every whole scan, in order
     ``activity``         what the processing elements did meanwhile; None where nothing tells
@@ -75,6 +79,8 @@ class Simulation:
     activity: ActivityRecord | None = None
     merge_cycles: int | None = None
     sent: Sequence[int] = ()
+    taken: Sequence[int] = ()
+    followed: Sequence[int] = ()
 
 
 class Answers:
@@ -84,7 +90,10 @@ class Answers:
     ``frames``     how many were drawn
     ``fragments``  int64 (readings, elements): since each reading's frame start
     ``busy``       int64 (readings, elements): cycles, likewise
-    ``sent``       int64 (readings, nodes): pixels, of cages whose merge cards send any
+    ``sent``       int64 (readings, nodes): pixels, of cages whose nodes send any
+    ``taken``      int64 (readings, units): fragments, of cages whose elements have all units
+                   together
+    ``followed``   int64 (readings, units): likewise
 
     Raises ``MachineError`` where the machine reports a fault, or a resolution that is not the
     configuration's.
@@ -106,12 +115,17 @@ class Answers:
             raise MachineError("the machine draws {}x{}, expected {}x{}".format(
                 *self._resolution, *organisation.resolution[:2]))
         self._domains = self._fields(ResponseKind.DOMAIN)
+        if configuration.merges_directly:  # all have the same one
+            self._domains *= configuration.processing_elements
         self.frames = len(self._values[ResponseKind.FRAME_DRAWN])
         self.fragments, self.busy = (
             np.array(self._values[kind], np.int64).reshape(-1, len(self._domains))
             for kind in (ResponseKind.FRAGMENTS, ResponseKind.BUSY))
-        sent = self._values[ResponseKind.SENT]
-        self.sent = np.array(sent, np.int64).reshape(len(self.fragments), -1)
+        self.sent, self.taken, self.followed = (
+            np.array(self._values[kind], np.int64).reshape(len(self.fragments), -1)
+            for kind in (ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED))
+        if configuration.merges_directly:
+            self.sent = self.fragments
 
     def _fields(self, kind: ResponseKind) -> list[dict[str, int]]:
         return [response_fields(kind, value) for value in self._values[kind]]
@@ -138,7 +152,9 @@ class Answers:
                       organisation.domains, self._domains, self.fragments[reading],
                       self.busy[reading], strict=True)],
             merge_cycles=self._values[ResponseKind.MERGED][number] if organisation.merges else None,
-            sent=[int(pixels) for pixels in self.sent[reading]],
+            sent=self.sent[reading].tolist(),
+            taken=self.taken[reading].tolist(),
+            followed=self.followed[reading].tolist(),
             owned=units["owned"],
             total=units["total"],
             boot_cycles=self._values[ResponseKind.BOOTED][0],

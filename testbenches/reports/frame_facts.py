@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from ...golden.merging.cage import merge_cage
+from ...golden.merging.direct import DirectTraffic
 from ...golden.organisations.machine_facts import machine_facts
 from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
+from ..frames.responses import Simulation
 
 
 def report_facts(rendering: Rendering) -> dict[str, Any]:
@@ -81,7 +83,8 @@ def merging_facts(rendering: Rendering) -> dict[str, Any] | None:
     """What the nodes sent to merge their pictures, by the machine's counters and by the golden
     model; None where there is one node.
 
-    A chain's last card sends to the pins, which is no link.
+    A chain's last card sends to the pins, which is no link.  Processing elements without pixels
+    send every fragment, which memory units take.
     """
     configuration, simulation = rendering.configuration, rendering.simulation
     if not organisation_of(configuration).merges:
@@ -98,7 +101,16 @@ def merging_facts(rendering: Rendering) -> dict[str, Any] | None:
         "total_bits": sum(counted) * traffic.pixel_bits,
         "busiest_link_pixels": traffic.busiest_piece,
         "steps": traffic.steps,
+        **(_units(traffic, simulation) if isinstance(traffic, DirectTraffic) else {}),
     }
+
+
+def _units(traffic: DirectTraffic, simulation: Simulation) -> dict[str, Any]:
+    """What memory units took from all processing elements."""
+    golden = traffic.taken.sum(axis=0).tolist()
+    return {"taken": list(simulation.taken), "golden_taken": golden,
+            "taken_equal": list(simulation.taken) == golden,
+            "followed": list(simulation.followed)}
 
 
 def _machine(rendering: Rendering) -> dict[str, Any]:
