@@ -21,6 +21,7 @@ class RoundRobin(wiring.Component):
     Members
     -------
     requests: In(requesters)
+        Who asks.
     grant: Out(requesters)
         One of the requests, whatever ``take`` is; 0 where there are none.
     take: In(1)
