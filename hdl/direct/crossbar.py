@@ -60,6 +60,10 @@ class Crossbar(wiring.Component):
 
     def __init__(self, *, elements: int, units: int, queue: Queue, id_bits: int,
                  address_bits: int, depth_bits: int):
+        if elements < 1:
+            raise ValueError(f"elements must be positive, not {elements!r}")
+        if queue != "element" and queue < 1:
+            raise ValueError(f"queue must be positive or 'element', not {queue!r}")
         if not 1 <= units < 1 << id_bits:
             raise ValueError(f"units must be 1 to {(1 << id_bits) - 1}, not {units!r}")
         bits = {"address_bits": address_bits, "depth_bits": depth_bits}

@@ -47,6 +47,8 @@ class UnitFeed(wiring.Component):
     latency = 2
 
     def __init__(self, *, elements: int, shape: data.StructLayout):
+        if elements < 1:
+            raise ValueError(f"elements must be positive, not {elements!r}")
         self._arbiter = RoundRobin(requesters=elements)
         self.elements = elements
         super().__init__({
