@@ -19,7 +19,7 @@ from ..backplane.words import (
 )
 from ..triangle_setup.triangle_setup import TriangleSetup
 from .frame_tags import FrameTags
-from .node_control import node_control
+from .merge_control import merge_control
 
 __all__ = ["CentralBroadcastController"]
 
@@ -82,12 +82,14 @@ class CentralBroadcastController(wiring.Component):
         self.tags = FrameTags(tag_bits=configuration.tag_bits)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
-        self._nodes = node_control(configuration)
+        self._nodes = merge_control(configuration)
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
         self.frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
-        self._scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
+        self.scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
+        # Of the frame whose commands ended last, clocks from its start until all was drawn.
+        self.drawn_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="drawn")
         # What the cage is: units that are somebody's, shares that are not as large as they must be,
         # whether the cards can interlace so many units, and the resolution as it is reported.
         self._owned = Signal(commands.RESPONSE_VALUE_BITS, name="owned")
@@ -129,9 +131,9 @@ class CentralBroadcastController(wiring.Component):
             self._observe(m)
         # Unless the controller itself speaks, the processing elements do.
         m.d.comb += [
-            self.responses.valid.eq(self.right.response.valid),
-            self.responses.payload.eq(self.right.response.payload),
-            self.right.response.ready.eq(self.responses.ready),
+            self.answers.valid.eq(self.right.response.valid),
+            self.answers.payload.eq(self.right.response.payload),
+            self.right.response.ready.eq(self.answers.ready),
         ]
         with m.FSM():
             self._boot(m)
@@ -145,12 +147,17 @@ class CentralBroadcastController(wiring.Component):
     # What is used in many places.
 
     @property
-    def _opcode(self):
+    def opcode(self):
         return self.commands.payload[:commands.OPCODE_BITS]
 
     @property
     def _body(self):
         return self.commands.payload[commands.BODY_OFFSET:]
+
+    @property
+    def answers(self):
+        """Where responses go from here and from the chain."""
+        return self._nodes.answers(self)
 
     @property
     def quiet(self):
@@ -159,13 +166,18 @@ class CentralBroadcastController(wiring.Component):
 
     @property
     def _in_turn(self):
-        """The command need not wait for triangles that are still being set up."""
+        """The command need not wait for triangles that are still being set up, nor for a picture
+        on its way to the screen."""
+        return self._nodes.in_turn(self, self._set_up_in_turn)
+
+    @property
+    def _set_up_in_turn(self):
         if self._setup is None:
             return C(1)
         vertices = Opcode.TRIANGLE
         if self.configuration.list_words:  # what is set up is all to be loaded, or all to be drawn
             vertices = Mux(self._loading, Opcode.LOAD, Opcode.TRIANGLE)
-        return (self._opcode == vertices) | ~self._setup.busy
+        return (self.opcode == vertices) | ~self._setup.busy
 
     @property
     def _vertices(self):
@@ -188,12 +200,12 @@ class CentralBroadcastController(wiring.Component):
     def respond(self, m, kind, value, then):
         """The controller's own response; the chain waits meanwhile."""
         m.d.comb += [
-            self.responses.valid.eq(1),
-            self.responses.payload.kind.eq(kind),
-            self.responses.payload.value.eq(value),
+            self.answers.valid.eq(1),
+            self.answers.payload.kind.eq(kind),
+            self.answers.payload.value.eq(value),
             self.right.response.ready.eq(0),
         ]
-        with m.If(self.responses.ready):
+        with m.If(self.answers.ready):
             m.next = then
 
     # What goes on beside the commands.
@@ -207,7 +219,7 @@ class CentralBroadcastController(wiring.Component):
         with m.Elif(self._settle != 0):
             m.d.sync += self._settle.eq(self._settle - 1)
         with m.If(self.scan_start):
-            m.d.sync += self._scans.eq(self._scans + 1)
+            m.d.sync += self.scans.eq(self.scans + 1)
 
     def _set_up(self, m, setup):
         """Triangles are announced as soon as they are set up."""
@@ -222,11 +234,11 @@ class CentralBroadcastController(wiring.Component):
             self.announce(m, operation)
         if self.configuration.list_words:
             with m.If(self.commands.valid & self.commands.ready):
-                m.d.sync += self._loading.eq(self._opcode == Opcode.LOAD)
+                m.d.sync += self._loading.eq(self.opcode == Opcode.LOAD)
 
     def _observe(self, m):
-        offered = self.commands.valid & ((self._opcode == Opcode.TRIANGLE)
-                                         | (self._opcode == Opcode.PREPARED_TRIANGLE))
+        offered = self.commands.valid & ((self.opcode == Opcode.TRIANGLE)
+                                         | (self.opcode == Opcode.PREPARED_TRIANGLE))
         m.d.comb += self.more.eq(offered | (0 if self._setup is None else self._setup.busy))
 
     # The states.
@@ -260,7 +272,7 @@ class CentralBroadcastController(wiring.Component):
     def _command(self, m):
         """A command is offered, and may be taken."""
         m.d.comb += self.commands.ready.eq(self.broadcast.ready)
-        with m.Switch(self._opcode):
+        with m.Switch(self.opcode):
             if self._setup is not None:
                 with m.Case(*self._vertices):
                     m.d.comb += [self._setup.vertices.valid.eq(1),
@@ -274,7 +286,7 @@ class CentralBroadcastController(wiring.Component):
                 self.announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
-                m.d.sync += [self.frame_cycles.eq(0), self._scans.eq(self.scan_start)]
+                m.d.sync += [self.frame_cycles.eq(0), self.scans.eq(self.scan_start)]
                 for place, background in enumerate(self._backgrounds):
                     with m.If(self.pictures.front != place):
                         m.d.sync += background.eq(self._body)
@@ -323,22 +335,14 @@ class CentralBroadcastController(wiring.Component):
 
     def _show(self, m):
         """From the end of a frame's commands until its picture is shown."""
-        pictures = self.pictures
         with m.State("DRAWING"), m.If(self.quiet):
-            drawn = Signal.like(self.frame_cycles, name="drawn")
-            m.d.sync += drawn.eq(self.frame_cycles)
-            merges = self._nodes.drawn(m)
+            m.d.sync += self.drawn_cycles.eq(self.frame_cycles)
+            self._nodes.drawn(m)
             m.next = "REPORT_DRAWN"
         with m.State("REPORT_DRAWN"):
-            self.respond(m, ResponseKind.FRAME_DRAWN, drawn, merges)
-        self._nodes.report_merged(m, self, drawn)
-        with m.State("SWAP"), m.If(self.scan_start):
-            # Every pixel of the scan that begins here is fetched after this edge.
-            shown = Signal.like(self._scans, name="shown")
-            m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(self._scans)]
-            m.next = self._nodes.after_swap
-        with m.State("REPORT_SHOWN"):
-            self.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
+            self.respond(m, ResponseKind.FRAME_DRAWN, self.drawn_cycles,
+                         self._nodes.after_drawn(m, self))
+        self._nodes.show(m, self)
 
     def _refuse(self, m):
         """The machine does not draw: an error at boot and in answer to every command."""
