@@ -7,8 +7,9 @@ from amaranth.lib.wiring import In, Out
 from ..golden.specification import commands
 from ..golden.specification.card_order import (
     CARD_MODULES,
+    FRAME_UNIT,
     MEMORY_UNIT,
-    MERGE_CARDS,
+    MERGING_CARDS,
     PROCESSING_ELEMENT,
 )
 from ..golden.specification.configuration import MachineConfiguration
@@ -25,6 +26,9 @@ from .nodes.node_lines import Node, connect_nodes
 from .nodes.tree_merge import TreeMerge
 from .observer import MachineActivity, activity_layout
 from .processing_element.processing_element import ProcessingElement
+from .snooping.frame_unit import FrameUnit
+from .snooping.snoop_lines import connect_snoop
+from .snooping.snoop_merge import SnoopMerge
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
@@ -38,13 +42,15 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "video_scan_generator": VideoScanGenerator,
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
+    "snoop_merge": SnoopMerge,
     "direct_merge": DirectMerge,
+    "frame_unit": FrameUnit,
 }
 
 
 def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
     """The kinds of boards that a machine has."""
-    others = {CARD_MODULES[letter] for letter in MERGE_CARDS if letter not in configuration.cards}
+    others = {CARD_MODULES[letter] for letter in MERGING_CARDS if letter not in configuration.cards}
     boards = {name: board for name, board in BOARDS.items() if name not in others}
     if configuration.merges_directly:
         boards["processing_element"] = DirectElement
@@ -110,6 +116,10 @@ class Machine(wiring.Component):
         return self._cards_of(MEMORY_UNIT)
 
     @property
+    def frame_units(self) -> list[FrameUnit]:
+        return self._cards_of(FRAME_UNIT)
+
+    @property
     def merge_cards(self) -> list[MergeCard]:
         return self._cards_of(self.configuration.merge)
 
@@ -127,9 +137,10 @@ class Machine(wiring.Component):
 
     @property
     def storages(self):
-        """Every RAM whose contents outlast a frame: of memory units, and of lists."""
-        boards = [*self.memory_units, *(
-            self.processing_elements if self.configuration.merges_directly else self.merge_cards)]
+        """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
+        lists = (self.processing_elements if self.configuration.merges_directly
+                 else self.merge_cards)
+        boards = [*self.memory_units, *self.frame_units, *lists]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):
@@ -155,6 +166,8 @@ class Machine(wiring.Component):
                            self.merge_cards[0], self.memory_units)
         else:
             connect_nodes(m, self.configuration, controller, generator, self.nodes)
+            if self.configuration.snoops:
+                connect_snoop(m, controller, generator, self.nodes, self.frame_units)
         if self.configuration.observe:
             self._observe(m)
         return m

@@ -79,7 +79,7 @@ class CentralBroadcastController(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.tags = FrameTags(tag_bits=configuration.tag_bits)
+        self.tags = FrameTags(tag_bits=configuration.tag_bits, frame_units=configuration.snoops)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
         self._nodes = merge_control(configuration)
@@ -99,8 +99,9 @@ class CentralBroadcastController(wiring.Component):
         self._loading = Signal(name="loading")  # the last command was LOAD
         # Clocks until ``done`` counts the last strobe.
         self._settle = Signal(range(BroadcastLines.settle_clocks + 1), name="settle")
-        self._backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
-                             for place in range(2)]
+        #: Of the two pictures that can be shown.
+        self.backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
+                            for place in range(2)]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -124,7 +125,7 @@ class CentralBroadcastController(wiring.Component):
         self._count_owned(m)
         self._nodes.add_to(m, self)
         self._tags(m)
-        m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
+        m.d.comb += self.background.eq(Mux(self._nodes.front(self), *reversed(self.backgrounds)))
         if self._setup is not None:
             self._set_up(m, self._setup)
         if self.configuration.observe:
@@ -151,7 +152,7 @@ class CentralBroadcastController(wiring.Component):
         return self.commands.payload[:commands.OPCODE_BITS]
 
     @property
-    def _body(self):
+    def body(self):
         return self.commands.payload[commands.BODY_OFFSET:]
 
     @property
@@ -224,7 +225,7 @@ class CentralBroadcastController(wiring.Component):
     def _set_up(self, m, setup):
         """Triangles are announced as soon as they are set up."""
         m.submodules.setup = setup
-        m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self._body)]
+        m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self.body)]
         with m.If(setup.triangles.valid):
             m.d.comb += [self._packet.body.draw.eq(setup.triangles.payload),
                          setup.triangles.ready.eq(self.broadcast.ready)]
@@ -260,7 +261,7 @@ class CentralBroadcastController(wiring.Component):
         with m.State("INITIALISE"):
             m.d.comb += self.pictures.initialise.eq(1)
             m.next = "INITIALISING"
-        with m.State("INITIALISING"), m.If(self.pictures.swept):
+        with m.State("INITIALISING"), m.If(self._nodes.swept(self)):
             booted = Signal.like(self._cycles, name="booted")
             m.d.sync += booted.eq(self._cycles)
             m.next = "REPORT_PICTURE"
@@ -287,9 +288,7 @@ class CentralBroadcastController(wiring.Component):
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
                 m.d.sync += [self.frame_cycles.eq(0), self.scans.eq(self.scan_start)]
-                for place, background in enumerate(self._backgrounds):
-                    with m.If(self.pictures.front != place):
-                        m.d.sync += background.eq(self._body)
+                self._nodes.start(m, self)
                 m.next = "START_FRAME"
             with m.Case(Opcode.FRAME_END):
                 m.d.comb += self.commands.ready.eq(1)
@@ -309,7 +308,7 @@ class CentralBroadcastController(wiring.Component):
     def _hold_to_picture(self, m):
         """The packet is the offered prepared triangle, without rows past the picture."""
         layout = prepared_triangle_layout(self.configuration)
-        offered, draw = data.View(layout, self._body[:layout.size]), self._packet.body.draw
+        offered, draw = data.View(layout, self.body[:layout.size]), self._packet.body.draw
         heights = {interlace.height for interlace in self.configuration.interlaces()}
         m.d.comb += draw.eq(offered)
         if min(heights) == (1 << self.configuration.y_bits) - 1:
@@ -361,7 +360,7 @@ class CentralBroadcastController(wiring.Component):
         pictures = self.pictures
         m.d.comb += [
             tags.back.eq(~pictures.front),
-            tags.swept.eq(pictures.swept),
+            tags.swept.eq(self._nodes.swept(self)),
             pictures.sweep.eq(tags.sweep),
             pictures.depth_tag.eq(tags.depth),
             *(line.eq(tag) for line, tag in zip(pictures.color_tag, tags.color, strict=True)),

@@ -10,6 +10,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
 from .node_control import NodeControl
 from .one_node import OneNode
+from .snoop_control import SnoopControl
 from .tree_steps import TreeSteps
 
 __all__ = ["ChainControl", "DirectControl", "TreeControl", "merge_control"]
@@ -125,4 +126,6 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return TreeControl(configuration=configuration)
     if configuration.merges_directly:
         return DirectControl(configuration=configuration)
+    if configuration.snoops:
+        return SnoopControl(configuration=configuration)
     return OneNode()

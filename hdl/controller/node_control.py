@@ -38,6 +38,8 @@ class NodeControl(OneNode):
                 **({"lists_full": In(1)} if configuration.list_words else {})}
 
     after_units = "REPORT_NODES"
+    #: The state after the report of the nodes.
+    after_nodes = "CHECK_UNITS"
 
     # What of the merging differs from one kind of cards to the next.
 
@@ -89,7 +91,7 @@ class NodeControl(OneNode):
             presenter.shown.eq(self.shown(controller)),
         ]
         with m.If(presenter.swap):
-            m.d.sync += controller.pictures.front.eq(~controller.pictures.front)
+            m.d.sync += self.front(controller).eq(~self.front(controller))
 
     def _take_turns(self, m, controller):
         """Two give responses: what one has begun to offer it offers until that is taken."""
@@ -110,10 +112,13 @@ class NodeControl(OneNode):
 
     def in_turn(self, controller, ready):
         """Lists are not what is presented; for all else there is no memory sooner."""
-        early = C(0)
-        if self.configuration.list_words:
-            early = (controller.opcode == Opcode.LOAD) | (controller.opcode == Opcode.CLEAR_LISTS)
-        return ready & (early | self.presenter.idle)
+        return ready & (self.is_for_lists(controller) | self.presenter.idle)
+
+    def is_for_lists(self, controller):
+        """The offered command changes lists, and nothing else."""
+        if not self.configuration.list_words:
+            return C(0)
+        return (controller.opcode == Opcode.LOAD) | (controller.opcode == Opcode.CLEAR_LISTS)
 
     def all_units(self, controller):
         return self.units
@@ -147,7 +152,7 @@ class NodeControl(OneNode):
 
     def states(self, m, controller):
         with m.State("REPORT_NODES"):
-            controller.respond(m, ResponseKind.NODES, controller.nodes, "CHECK_UNITS")
+            controller.respond(m, ResponseKind.NODES, controller.nodes, self.after_nodes)
         if self.configuration.list_words:
             with m.State("LIST_FULL"):
                 controller.respond(m, ResponseKind.ERROR, Fault.LIST_FULL, "COMMAND")

@@ -38,6 +38,20 @@ class OneNode:
         """Memory units in the cage."""
         return controller.total
 
+    def front(self, controller):
+        """Which of two pictures is shown."""
+        return controller.pictures.front
+
+    def swept(self, controller):
+        """No unit is in a pass."""
+        return controller.pictures.swept
+
+    def start(self, m, controller):
+        """Inside the clock in which a frame's start is taken: its background is kept."""
+        for place, background in enumerate(controller.backgrounds):
+            with m.If(controller.pictures.front != place):
+                m.d.sync += background.eq(controller.body)
+
     def refused(self, controller):
         """The cage draws nothing."""
         return controller.unsupported_units

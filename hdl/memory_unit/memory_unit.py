@@ -14,14 +14,11 @@ from .own_depth_test import OwnDepthTest
 from .scan_part import ScanPart
 from .send_part import SendPart
 from .snoop_part import SnoopPart
-from .tag_sweep import TagSweep
+from .sweep_part import add_sweep
 from .two_port_memory import TwoPortMemory
 from .word_parts import pixel_layout, word_parts
 
 __all__ = ["MemoryUnit"]
-
-#: Address bits that tell whether a write may go to the word that is swept: a false alarm in 16.
-COMPARED_BITS = 4
 
 
 class MemoryUnit(wiring.Component):
@@ -111,7 +108,7 @@ class MemoryUnit(wiring.Component):
             self._scan.add_to(m, self, number, of_pictures, fetch=self.scan.fetch,
                               show=self.scan.show)
         self._serve(m, number, current)
-        self._sweep(m, current)
+        add_sweep(m, self, words=self.configuration.words, parts=self._parts, current=current)
         if isinstance(self._besides, SnoopPart):
             self._besides.add_to(m, self, of_pictures)
         elif self._besides is not None:
@@ -187,23 +184,3 @@ class MemoryUnit(wiring.Component):
         back = Mux(front, access.pixel[0].value, access.pixel[1].value)
         return (Mux(front, current[0], current[1]),
                 data.View(pixel_layout(self.configuration.rank_bits), back).depth)
-
-    def _sweep(self, m, current):
-        """Take old tags out; ``current`` of all parts."""
-        m.submodules.tag_sweep = sweep = TagSweep(words=self.configuration.words,
-                                                  parts=len(self._parts))
-        access, pictures = self.memory.access, self.pictures
-        m.d.comb += [
-            sweep.start.eq(pictures.sweep),
-            sweep.initialise.eq(pictures.initialise),
-            pictures.swept.eq(sweep.idle),
-            access.sweep.eq(sweep.sweep),
-            access.erase.eq(sweep.erase),
-            access.sweep_address.eq(sweep.address),
-            sweep.busy.eq(access.sweep_busy),
-            sweep.scan.eq(access.scan),
-            sweep.stale.eq(Cat(part_answer(access, part).tag.any() for part in self._parts)
-                           & ~current),
-        ]
-        near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0
-        m.d.comb += sweep.overwritten.eq(access.write & ~access.write_busy & near)
