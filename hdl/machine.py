@@ -7,13 +7,17 @@ from amaranth.lib.wiring import In, Out
 from ..golden.specification import commands
 from ..golden.specification.card_order import (
     CARD_MODULES,
+    FRAME_UNIT,
     MEMORY_UNIT,
-    MERGE_CARDS,
+    MERGING_CARDS,
     PROCESSING_ELEMENT,
 )
 from ..golden.specification.configuration import MachineConfiguration
 from .backplane.words import response_layout
 from .controller.central_broadcast_controller import CentralBroadcastController
+from .direct.direct_element import DirectElement
+from .direct.direct_lines import connect_direct
+from .direct.direct_merge import DirectMerge
 from .lines_to_all import connect_broadcast, connect_pictures, connect_scan
 from .memory_unit.memory_unit import MemoryUnit
 from .nodes.chain_merge import ChainMerge
@@ -22,6 +26,9 @@ from .nodes.node_lines import Node, connect_nodes
 from .nodes.tree_merge import TreeMerge
 from .observer import MachineActivity, activity_layout
 from .processing_element.processing_element import ProcessingElement
+from .snooping.frame_unit import FrameUnit
+from .snooping.snoop_lines import connect_snoop
+from .snooping.snoop_merge import SnoopMerge
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
@@ -35,13 +42,19 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "video_scan_generator": VideoScanGenerator,
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
+    "snoop_merge": SnoopMerge,
+    "direct_merge": DirectMerge,
+    "frame_unit": FrameUnit,
 }
 
 
 def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
     """The kinds of boards that a machine has."""
-    others = {CARD_MODULES[letter] for letter in MERGE_CARDS if letter not in configuration.cards}
-    return {name: board for name, board in BOARDS.items() if name not in others}
+    others = {CARD_MODULES[letter] for letter in MERGING_CARDS if letter not in configuration.cards}
+    boards = {name: board for name, board in BOARDS.items() if name not in others}
+    if configuration.merges_directly:
+        boards["processing_element"] = DirectElement
+    return boards
 
 
 class Machine(wiring.Component):
@@ -82,13 +95,13 @@ class Machine(wiring.Component):
         })
 
     def make_board(self, name: str) -> wiring.Component:
-        """A new board of the kind ``name``, a key of ``BOARDS``; called once for each that the
+        """A new board of the kind ``name``, a key of ``boards_of``; called once for each that the
         machine has, the controller first, the scan generator next, then slot by slot.
 
         A subclass overrides it to put other boards in the same places.  They must have the
-        signature that ``BOARDS[name]`` has with this machine's configuration.
+        signature that the board of that name has with this machine's configuration.
         """
-        return BOARDS[name](configuration=self.configuration)
+        return boards_of(self.configuration)[name](configuration=self.configuration)
 
     def _cards_of(self, letter):
         return [card for card, place in zip(self.cards, self.configuration.cards, strict=True)
@@ -103,12 +116,16 @@ class Machine(wiring.Component):
         return self._cards_of(MEMORY_UNIT)
 
     @property
+    def frame_units(self) -> list[FrameUnit]:
+        return self._cards_of(FRAME_UNIT)
+
+    @property
     def merge_cards(self) -> list[MergeCard]:
         return self._cards_of(self.configuration.merge)
 
     @property
     def nodes(self) -> list[Node]:
-        """The cards of each node; of a cage of nodes."""
+        """The cards of each node that a merge card ends."""
         found, elements, units = [], [], []
         for card, letter in zip(self.cards, self.configuration.cards, strict=True):
             if letter == self.configuration.merge:
@@ -120,8 +137,10 @@ class Machine(wiring.Component):
 
     @property
     def storages(self):
-        """Every RAM whose contents outlast a frame: of memory units, and of lists."""
-        boards = [*self.memory_units, *self.merge_cards]
+        """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
+        lists = (self.processing_elements if self.configuration.merges_directly
+                 else self.merge_cards)
+        boards = [*self.memory_units, *self.frame_units, *lists]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):
@@ -142,8 +161,13 @@ class Machine(wiring.Component):
             left = card
         if self.configuration.merge is None:
             self._connect_lines_to_all(m, total=left.right.id)
+        elif self.configuration.merges_directly:
+            connect_direct(m, self.configuration, controller, generator, self.processing_elements,
+                           self.merge_cards[0], self.memory_units)
         else:
             connect_nodes(m, self.configuration, controller, generator, self.nodes)
+            if self.configuration.snoops:
+                connect_snoop(m, controller, generator, self.nodes, self.frame_units)
         if self.configuration.observe:
             self._observe(m)
         return m

@@ -174,7 +174,7 @@ _NODE_OPTIONS = (
     click.option("--queue", type=QUEUE, metavar="N|element",
                  help="Where nodes merge directly (D): how many fragments can wait from each "
                  "processing element to each memory unit, or one queue for each element.  "
-                 "[default: 2]"),
+                 "[default: 4]"),
     click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
                  help="Triangles that each list memory holds; gives nodes one, like --retain.  "
                  "[default: what the scene needs]"),

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
-from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..frames.rendering import Rendering
 from ..support.any_characters import readable
 from .activity_chart import activity_chart, timeline_chart
+from .card_groups import card_groups
 from .frame_facts import report_facts
 from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
 from .page import page_environment
@@ -26,34 +24,6 @@ PAGE_PICTURE_PIXELS = 320
 #: Everything that ``write_report`` writes.
 REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "difference.png",
                 "display_list.npz")
-
-
-@dataclass(frozen=True)
-class CardGroup:
-    """Neighbouring cards in the drawing of the cage: a processing element and its units, or a
-    merge card.
-
-    ``element``  None for units that belong to nobody
-    ``merge``    the letter of a merge card, which is a group by itself
-    ``node``     the node that it ends
-    """
-
-    element: int | None
-    units: range
-    merge: str | None = None
-    node: int = 0
-
-    @property
-    def caption(self) -> str:
-        if self.merge is not None:
-            return f"ends node {self.node}"
-        if self.element is None:
-            return "owned by nobody"
-        if not self.units:
-            return "owns none"
-        if len(self.units) == 1:
-            return f"owns {self.units[0]}"
-        return f"owns {self.units[0]} to {self.units[-1]}"
 
 
 def write_report(rendering: Rendering, folder: Path) -> None:
@@ -103,22 +73,6 @@ def report_page(rendering: Rendering, facts: dict[str, Any], template: str = "re
 def _activity_charts(rendering: Rendering) -> list[str]:
     record = rendering.simulation.activity
     return [] if record is None else [activity_chart(record), timeline_chart(record)]
-
-
-def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
-    """The cage from left to right."""
-    organisation = organisation_of(configuration)
-    groups = []
-    elements = count()
-    for number, node in enumerate(organisation.each):
-        orphans = node.domains[0].first if node.domains else node.units
-        if orphans:
-            groups.append(CardGroup(None, range(orphans)))
-        groups += [CardGroup(next(elements), range(domain.first, domain.first + domain.units))
-                   for domain in node.domains]
-        if organisation.merges:
-            groups.append(CardGroup(None, range(0), configuration.merge, number))
-    return groups
 
 
 def _is_exact(rendering: Rendering) -> bool:
