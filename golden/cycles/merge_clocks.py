@@ -10,7 +10,8 @@ at a port that the scan has now and then; pixels come from two units in turn, so
 share them.  How many each of the two units sends is not looked at, which makes this up to a tenth
 wrong.
 
-A chain merges while it is scanned, which takes no clock of a frame.
+A chain merges while it is scanned, which takes no clock of a frame; nodes on a bus have clocks of
+their own (``snoop_clocks``).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from .one_port_lanes import scan_share
+from .snoop_clocks import snoop_clocks
 
 #: From the end of drawing to the first step.
 MERGE_CLOCKS = 1
@@ -39,7 +41,8 @@ def predict_merge(configuration: MachineConfiguration, display_list: DisplayList
     if not organisation_of(configuration).merges_after_drawing:
         return 0
     _, traffic = merge_cage(configuration, display_list)
-    return sum(merge_clocks(configuration, traffic))
+    return sum(snoop_clocks(traffic) if configuration.snoops else
+               merge_clocks(configuration, traffic))
 
 
 def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[int]:
