@@ -167,7 +167,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
     "unit_counters": partial(_direct, lambda c: UnitCounters(units=c.maximum_units)),
     "unit_feed": partial(_direct, lambda c: UnitFeed(elements=c.maximum_nodes,
-                                                      shape=_fragment(c))),
+                                                     shape=_fragment(c))),
     "unit_pixel": lambda c: UnitPixel(configuration=c),
     "vertex_sort": lambda c: VertexSort(configuration=c),
 }

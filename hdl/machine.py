@@ -43,8 +43,8 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
     "snoop_merge": SnoopMerge,
-    "frame_unit": FrameUnit,
     "direct_merge": DirectMerge,
+    "frame_unit": FrameUnit,
 }
 
 
@@ -138,8 +138,9 @@ class Machine(wiring.Component):
     @property
     def storages(self):
         """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
-        boards = [*self.memory_units, *self.frame_units, *(
-            self.processing_elements if self.configuration.merges_directly else self.merge_cards)]
+        lists = (self.processing_elements if self.configuration.merges_directly
+                 else self.merge_cards)
+        boards = [*self.memory_units, *self.frame_units, *lists]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):

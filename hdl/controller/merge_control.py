@@ -124,8 +124,8 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return ChainControl(configuration=configuration)
     if configuration.sends_drawn:
         return TreeControl(configuration=configuration)
-    if configuration.snoops:
-        return SnoopControl(configuration=configuration)
     if configuration.merges_directly:
         return DirectControl(configuration=configuration)
+    if configuration.snoops:
+        return SnoopControl(configuration=configuration)
     return OneNode()

@@ -23,7 +23,6 @@ from wide_machines import wide_machine
 from cardcage.golden.merging.ties import order_matters
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
-from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.simulation import simulate
 
 PACKETS = (1, 3, 10, "contiguous")
