@@ -123,6 +123,7 @@ def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
         "organisation": organisation.name,
         "nodes": organisation.nodes,
         "memory_units_of_each": list(organisation.node_units),
+        **({"frame_units": configuration.frame_units} if configuration.snoops else {}),
         "nearer": "least depth, of equal depths the least round, of equal rounds the lowest node",
         "order_bits": configuration.order_bits,
         "packet": configuration.packet,
