@@ -12,8 +12,8 @@ import click
 from ..fpga.place_and_route import TARGET_MHZ
 from ..speed.cases import SIZE
 from ..support.atomic_output import atomic_file, output_errors
+from ..support.progress import step_bar
 from .command_options import Several, Size
-from .progress import step_bar
 
 #: What can be measured (``fpga.boards``, which loads Amaranth and so is not asked here).
 BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports",

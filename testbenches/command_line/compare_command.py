@@ -20,9 +20,9 @@ from ..comparison.comparison_facts import comparison_facts
 from ..comparison.comparison_table import comparison_table, comparison_text
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE
+from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import Several, machine_options_of_cages
-from .progress import step_bar
 
 
 @click.command(name="compare")

@@ -51,7 +51,7 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
         "equal": comparison.equal,
         "differences": comparison.differences,
         "pictures": [[run.cage.label for run in group] for group in comparison.pictures],
-        "cages": [_cage(run) for run in comparison.runs],
+        "cages": [cage_facts(run) for run in comparison.runs],
         "refused": [{"label": each.cage.label, "cards": each.cage.cards,
                      "retained": each.cage.retained, "reason": each.reason, "failed": each.failed}
                     for each in comparison.refused],
@@ -61,7 +61,7 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
     }
 
 
-def _cage(run: CageRun) -> dict[str, Any]:
+def cage_facts(run: CageRun) -> dict[str, Any]:
     compared, simulation = run.comparison, run.simulation
     return {
         "label": run.cage.label,

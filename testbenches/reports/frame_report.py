@@ -29,31 +29,38 @@ REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "differen
 def write_report(rendering: Rendering, folder: Path) -> None:
     """Write ``REPORT_FILES`` to ``folder``, which exists."""
     facts = report_facts(rendering)
+    write_files(rendering, folder, facts, report_page(rendering, facts))
+
+
+def write_files(rendering: Rendering, folder: Path, facts: dict[str, Any], page: str) -> None:
+    """``REPORT_FILES`` with these facts and that page."""
     (folder / "report.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     (folder / "rtl.png").write_bytes(png(rendering.simulation.video))
     (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
     (folder / "difference.png").write_bytes(png(color_difference(rendering)))
     rendering.scene.display_list.save(folder / "display_list.npz")
-    (folder / "report.html").write_text(readable(report_page(rendering, facts)),
-                                        encoding="utf-8")
+    (folder / "report.html").write_text(readable(page), encoding="utf-8")
 
 
-def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
-    """The page, complete in itself: pictures and chart are inside it."""
+def report_page(rendering: Rendering, facts: dict[str, Any], template: str = "report.html",
+                **more: Any) -> str:
+    """The page, complete in itself: pictures and chart are inside it; ``more`` is for a template
+    that extends this one."""
     environment = page_environment()
     environment.filters["hexadecimal"] = _hexadecimal
-    machine_depth, golden_depth = depth_pictures(rendering)
     # A picture larger than its place loses pixels there: a lone red one must not be among them.
     reach = max(rendering.simulation.video.shape) // PAGE_PICTURE_PIXELS
-    return environment.get_template("report.html").render(
-        facts,
-        rows=[
-            ("Colour", "from the video pins", data_uri(rendering.simulation.video),
+    rows = [("Colour", "from the video pins", data_uri(rendering.simulation.video),
              data_uri(rendering.comparison.expected),
-             data_uri(color_difference(rendering, reach))),
-            ("Depth", "read back, near is light", data_uri(machine_depth), data_uri(golden_depth),
-             data_uri(depth_difference(rendering, reach))),
-        ],
+             data_uri(color_difference(rendering, reach)))]
+    if rendering.simulation.depth is not None:
+        machine_depth, golden_depth = depth_pictures(rendering)
+        rows.append(("Depth", "read back, near is light", data_uri(machine_depth),
+                     data_uri(golden_depth), data_uri(depth_difference(rendering, reach))))
+    return environment.get_template(template).render(
+        facts,
+        rows=rows,
+        **more,
         chart=work_chart(rendering.simulation.work),
         activity_charts=_activity_charts(rendering),
         activity_kinds=ACTIVITY_KINDS,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import click
 
-from cardcage.testbenches.command_line.progress import step_bar
+from cardcage.testbenches.support.progress import step_bar
 from cardcage.testbenches.support.text_table import TextTable
 
 from .mutation.campaign_trial import Copy
