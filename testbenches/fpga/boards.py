@@ -42,6 +42,7 @@ class Board:
     ``changes``  fields of the configuration in which it differs from the rest
     ``mapping``  as of ``Part``
     ``merge``    the card that ends nodes of the cards, which there are two of; none where empty
+    ``cage``     of a board that is of no node of the cards: all cards of the machine
     """
 
     title: str
@@ -50,19 +51,23 @@ class Board:
     changes: Mapping[str, Any] = field(default_factory=dict)
     mapping: LogicMapping = "area"
     merge: str = ""
+    cage: str = ""
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """The board in a machine that is exact for any triangle on the screen.  Raises
         ``InputError``."""
         machine: dict[str, Any] = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS,
                                    "shading": "flat", "memory_ports": 2} | dict(self.changes)
-        if self.merge:
-            machine["packet"] = "contiguous"  # no order beside the depths
+        if self.merge or self.cage:
+            machine["packet"] = "contiguous"  # no rounds beside the depths
         configuration = MachineConfiguration(
-            cards=f"2x({cards}{self.merge})" if self.merge else cards,
+            cards=self.cage or (f"2x({cards}{self.merge})" if self.merge else cards),
             width=width, height=height, **machine, **on_screen_widths(width, height, SUB_BITS))
         return Part(configuration, self.name, self.build, self.mapping)
 
+
+#: Direct merges grow with the product of elements and units; of this one the parts are measured.
+DIRECT = "4x(P)D4x(M)"
 
 #: The rows, by the names that ``--boards`` takes.
 BOARDS = {
@@ -78,6 +83,15 @@ BOARDS = {
                           merge=TREE_MERGE),
     "chain-merge": Board("chain merge", "chain_merge", merge=CHAIN_MERGE),
     "tree-merge": Board("tree merge", "tree_merge", merge=TREE_MERGE),
+    "element-of-direct": Board("direct element, flat, 4x4", "direct_element", cage=DIRECT),
+    "unit-of-direct": Board("memory unit, 2 ports, own depth test, 4x4", "memory_unit",
+                            memory_unit, cage=DIRECT),
+    "direct-merge": Board("direct merge 4x4, 4 for each unit", "direct_merge", mapping="plain",
+                          cage=DIRECT),
+    "direct-merge-2": Board("direct merge 4x4, 2 for each unit", "direct_merge",
+                            changes={"queue": 2}, mapping="plain", cage=DIRECT),
+    "direct-merge-element": Board("direct merge 4x4, a queue an element", "direct_merge",
+                                  changes={"queue": "element"}, mapping="plain", cage=DIRECT),
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
