@@ -6,8 +6,8 @@ from functools import partial
 
 from amaranth.lib import wiring
 
-from ..golden.specification.card_order import CARD_MODULES, MERGE_CARDS
-from ..golden.specification.configuration import MachineConfiguration
+from ..golden.specification.card_order import CARD_MODULES, FRAME_UNIT, MERGE_CARDS, SNOOP_MERGE
+from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
 from ..golden.specification.queues import depth_lanes
 from .arithmetic.divider import Divider
 from .arithmetic.pipelined_multiplier import PipelinedMultiplier
@@ -21,12 +21,14 @@ from .depth_test.two_ports import TwoPortDepthTest
 from .machine import BOARDS
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
+from .mapping.unit_pixel import UnitPixel
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
 from .memory_unit.two_port_memory import TwoPortMemory
 from .memory_unit.word_parts import word_parts
 from .merging.drawn_map import DrawnMap
 from .merging.nearest_word import NearestWord
+from .merging.picture_maps import PictureMaps
 from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
@@ -56,10 +58,12 @@ def _depth(configuration: MachineConfiguration) -> dict[str, int]:
 
 
 def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
-    """A merge card is as in a cage that it ends, where the configuration has none."""
-    for letter in MERGE_CARDS:
+    """A merge card is as in a cage that it ends, where the configuration has none; a frame unit
+    as in one that sends to it."""
+    for letter in (*MERGE_CARDS, FRAME_UNIT):
         if name == CARD_MODULES[letter]:
-            configuration = _ended_by(letter, configuration)
+            configuration = _ended_by(SNOOP_MERGE if letter == FRAME_UNIT else letter,
+                                      configuration)
     return BOARDS[name](configuration=configuration)
 
 
@@ -67,8 +71,11 @@ def _ended_by(letter: str, configuration: MachineConfiguration) -> MachineConfig
     """The configuration with nodes that are ended by that card, of which there may be two."""
     if letter == configuration.merge:
         return configuration
-    return replace(configuration, maximum_nodes=2, cards="".join(
-        cards + letter for cards in configuration.node_cards))
+    cards = "".join(cards + letter for cards in configuration.node_cards)
+    if letter == SNOOP_MERGE:
+        return replace(configuration, maximum_nodes=2, cards=cards + FRAME_UNIT,
+                       tag_bits=max(SNOOP_TAG_BITS, configuration.tag_bits))
+    return replace(configuration, maximum_nodes=2, cards=cards)
 
 
 #: Makes a component as a machine of that configuration has it; the boards first.
@@ -92,6 +99,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.rank_bits,
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
+    "picture_maps": lambda c: PictureMaps(words=c.words),
     # The one that computes the area of a triangle.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
         a_bits=c.coordinate_bits + 1, b_bits=c.coordinate_bits + 1, pairs=2),
@@ -115,5 +123,6 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "two_port_depth_test": lambda c: TwoPortDepthTest(**memory_bus_bits(c)),
     "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.rank_bits,
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
+    "unit_pixel": lambda c: UnitPixel(configuration=c),
     "vertex_sort": lambda c: VertexSort(configuration=c),
 }

@@ -6,7 +6,7 @@ from operator import and_, or_
 
 from amaranth.hdl import *
 
-__all__ = ["connect_broadcast", "connect_pictures", "connect_scan"]
+__all__ = ["connect_broadcast", "connect_pictures", "connect_scan", "connect_senders"]
 
 
 def connect_broadcast(part: Module, lines, receivers: Sequence) -> None:
@@ -41,3 +41,16 @@ def connect_scan(part: Module, lines, units: Sequence) -> None:
                     for name in answers]
     for unit in units:
         part.d.comb += [unit.scan.fetch.eq(lines.fetch), unit.scan.show.eq(lines.show)]
+
+
+def connect_senders(part: Module, lines, units: Sequence) -> None:
+    """``SendLines`` to each memory unit of a node; settled: wired and, the rest wired or."""
+    answers = [unit.merge for unit in units]
+    part.d.comb += lines.settled.eq(reduce(and_, (answer.settled for answer in answers), C(1)))
+    part.d.comb += [
+        Value.cast(getattr(lines, name)).eq(
+            reduce(or_, (Value.cast(getattr(answer, name)) for answer in answers), C(0)))
+        for name in ("valid", "pixel", "more")]
+    for answer in answers:
+        part.d.comb += [getattr(answer, name).eq(getattr(lines, name))
+                        for name in ("start", "unit", "ready")]

@@ -7,8 +7,9 @@ from amaranth.lib.wiring import In, Out
 from ..golden.specification import commands
 from ..golden.specification.card_order import (
     CARD_MODULES,
+    FRAME_UNIT,
     MEMORY_UNIT,
-    MERGE_CARDS,
+    MERGING_CARDS,
     PROCESSING_ELEMENT,
 )
 from ..golden.specification.configuration import MachineConfiguration
@@ -22,6 +23,9 @@ from .nodes.node_lines import Node, connect_nodes
 from .nodes.tree_merge import TreeMerge
 from .observer import MachineActivity, activity_layout
 from .processing_element.processing_element import ProcessingElement
+from .snooping.frame_unit import FrameUnit
+from .snooping.snoop_lines import connect_snoop
+from .snooping.snoop_merge import SnoopMerge
 from .video.video_scan_generator import VideoPins, VideoScanGenerator
 from .wires import wires
 
@@ -35,12 +39,14 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "video_scan_generator": VideoScanGenerator,
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
+    "snoop_merge": SnoopMerge,
+    "frame_unit": FrameUnit,
 }
 
 
 def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
     """The kinds of boards that a machine has."""
-    others = {CARD_MODULES[letter] for letter in MERGE_CARDS if letter not in configuration.cards}
+    others = {CARD_MODULES[letter] for letter in MERGING_CARDS if letter not in configuration.cards}
     return {name: board for name, board in BOARDS.items() if name not in others}
 
 
@@ -103,6 +109,10 @@ class Machine(wiring.Component):
         return self._cards_of(MEMORY_UNIT)
 
     @property
+    def frame_units(self) -> list[FrameUnit]:
+        return self._cards_of(FRAME_UNIT)
+
+    @property
     def merge_cards(self) -> list[MergeCard]:
         return self._cards_of(self.configuration.merge)
 
@@ -120,8 +130,8 @@ class Machine(wiring.Component):
 
     @property
     def storages(self):
-        """Every RAM whose contents outlast a frame: of memory units, and of lists."""
-        boards = [*self.memory_units, *self.merge_cards]
+        """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
+        boards = [*self.memory_units, *self.frame_units, *self.merge_cards]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):
@@ -144,6 +154,8 @@ class Machine(wiring.Component):
             self._connect_lines_to_all(m, total=left.right.id)
         else:
             connect_nodes(m, self.configuration, controller, generator, self.nodes)
+            if self.configuration.snoops:
+                connect_snoop(m, controller, generator, self.nodes, self.frame_units)
         if self.configuration.observe:
             self._observe(m)
         return m

@@ -20,7 +20,7 @@ WINGS = {
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all", "controller",
-        "video", "nodes", "machine", "components"),
+        "video", "nodes", "snooping", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
         "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",

@@ -19,7 +19,7 @@ from ..backplane.words import (
 )
 from ..triangle_setup.triangle_setup import TriangleSetup
 from .frame_tags import FrameTags
-from .node_control import node_control
+from .merge_control import merge_control
 
 __all__ = ["CentralBroadcastController"]
 
@@ -79,15 +79,17 @@ class CentralBroadcastController(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.tags = FrameTags(tag_bits=configuration.tag_bits)
+        self.tags = FrameTags(tag_bits=configuration.tag_bits, frame_units=configuration.snoops)
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.setup == "hardware" else None)
-        self._nodes = node_control(configuration)
+        self._nodes = merge_control(configuration)
         self._packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
         self.frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
-        self._scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
+        self.scans = Signal(commands.RESPONSE_VALUE_BITS, name="scans")
+        # Of the frame whose commands ended last, clocks from its start until all was drawn.
+        self.drawn_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="drawn")
         # What the cage is: units that are somebody's, shares that are not as large as they must be,
         # whether the cards can interlace so many units, and the resolution as it is reported.
         self._owned = Signal(commands.RESPONSE_VALUE_BITS, name="owned")
@@ -97,8 +99,9 @@ class CentralBroadcastController(wiring.Component):
         self._loading = Signal(name="loading")  # the last command was LOAD
         # Clocks until ``done`` counts the last strobe.
         self._settle = Signal(range(BroadcastLines.settle_clocks + 1), name="settle")
-        self._backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
-                             for place in range(2)]
+        #: Of the two pictures that can be shown.
+        self.backgrounds = [Signal(COLOR_BITS, name=f"background_{place}")
+                            for place in range(2)]
         super().__init__({
             "commands": In(stream.Signature(commands.command_bits(configuration))),
             "responses": Out(stream.Signature(response_layout())),
@@ -122,16 +125,16 @@ class CentralBroadcastController(wiring.Component):
         self._count_owned(m)
         self._nodes.add_to(m, self)
         self._tags(m)
-        m.d.comb += self.background.eq(Mux(self.pictures.front, *reversed(self._backgrounds)))
+        m.d.comb += self.background.eq(Mux(self._nodes.front(self), *reversed(self.backgrounds)))
         if self._setup is not None:
             self._set_up(m, self._setup)
         if self.configuration.observe:
             self._observe(m)
         # Unless the controller itself speaks, the processing elements do.
         m.d.comb += [
-            self.responses.valid.eq(self.right.response.valid),
-            self.responses.payload.eq(self.right.response.payload),
-            self.right.response.ready.eq(self.responses.ready),
+            self.answers.valid.eq(self.right.response.valid),
+            self.answers.payload.eq(self.right.response.payload),
+            self.right.response.ready.eq(self.answers.ready),
         ]
         with m.FSM():
             self._boot(m)
@@ -145,12 +148,17 @@ class CentralBroadcastController(wiring.Component):
     # What is used in many places.
 
     @property
-    def _opcode(self):
+    def opcode(self):
         return self.commands.payload[:commands.OPCODE_BITS]
 
     @property
-    def _body(self):
+    def body(self):
         return self.commands.payload[commands.BODY_OFFSET:]
+
+    @property
+    def answers(self):
+        """Where responses go from here and from the chain."""
+        return self._nodes.answers(self)
 
     @property
     def quiet(self):
@@ -159,13 +167,18 @@ class CentralBroadcastController(wiring.Component):
 
     @property
     def _in_turn(self):
-        """The command need not wait for triangles that are still being set up."""
+        """The command need not wait for triangles that are still being set up, nor for a picture
+        on its way to the screen."""
+        return self._nodes.in_turn(self, self._set_up_in_turn)
+
+    @property
+    def _set_up_in_turn(self):
         if self._setup is None:
             return C(1)
         vertices = Opcode.TRIANGLE
         if self.configuration.list_words:  # what is set up is all to be loaded, or all to be drawn
             vertices = Mux(self._loading, Opcode.LOAD, Opcode.TRIANGLE)
-        return (self._opcode == vertices) | ~self._setup.busy
+        return (self.opcode == vertices) | ~self._setup.busy
 
     @property
     def _vertices(self):
@@ -188,12 +201,12 @@ class CentralBroadcastController(wiring.Component):
     def respond(self, m, kind, value, then):
         """The controller's own response; the chain waits meanwhile."""
         m.d.comb += [
-            self.responses.valid.eq(1),
-            self.responses.payload.kind.eq(kind),
-            self.responses.payload.value.eq(value),
+            self.answers.valid.eq(1),
+            self.answers.payload.kind.eq(kind),
+            self.answers.payload.value.eq(value),
             self.right.response.ready.eq(0),
         ]
-        with m.If(self.responses.ready):
+        with m.If(self.answers.ready):
             m.next = then
 
     # What goes on beside the commands.
@@ -207,12 +220,12 @@ class CentralBroadcastController(wiring.Component):
         with m.Elif(self._settle != 0):
             m.d.sync += self._settle.eq(self._settle - 1)
         with m.If(self.scan_start):
-            m.d.sync += self._scans.eq(self._scans + 1)
+            m.d.sync += self.scans.eq(self.scans + 1)
 
     def _set_up(self, m, setup):
         """Triangles are announced as soon as they are set up."""
         m.submodules.setup = setup
-        m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self._body)]
+        m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self.body)]
         with m.If(setup.triangles.valid):
             m.d.comb += [self._packet.body.draw.eq(setup.triangles.payload),
                          setup.triangles.ready.eq(self.broadcast.ready)]
@@ -222,11 +235,11 @@ class CentralBroadcastController(wiring.Component):
             self.announce(m, operation)
         if self.configuration.list_words:
             with m.If(self.commands.valid & self.commands.ready):
-                m.d.sync += self._loading.eq(self._opcode == Opcode.LOAD)
+                m.d.sync += self._loading.eq(self.opcode == Opcode.LOAD)
 
     def _observe(self, m):
-        offered = self.commands.valid & ((self._opcode == Opcode.TRIANGLE)
-                                         | (self._opcode == Opcode.PREPARED_TRIANGLE))
+        offered = self.commands.valid & ((self.opcode == Opcode.TRIANGLE)
+                                         | (self.opcode == Opcode.PREPARED_TRIANGLE))
         m.d.comb += self.more.eq(offered | (0 if self._setup is None else self._setup.busy))
 
     # The states.
@@ -248,7 +261,7 @@ class CentralBroadcastController(wiring.Component):
         with m.State("INITIALISE"):
             m.d.comb += self.pictures.initialise.eq(1)
             m.next = "INITIALISING"
-        with m.State("INITIALISING"), m.If(self.pictures.swept):
+        with m.State("INITIALISING"), m.If(self._nodes.swept(self)):
             booted = Signal.like(self._cycles, name="booted")
             m.d.sync += booted.eq(self._cycles)
             m.next = "REPORT_PICTURE"
@@ -260,7 +273,7 @@ class CentralBroadcastController(wiring.Component):
     def _command(self, m):
         """A command is offered, and may be taken."""
         m.d.comb += self.commands.ready.eq(self.broadcast.ready)
-        with m.Switch(self._opcode):
+        with m.Switch(self.opcode):
             if self._setup is not None:
                 with m.Case(*self._vertices):
                     m.d.comb += [self._setup.vertices.valid.eq(1),
@@ -274,10 +287,8 @@ class CentralBroadcastController(wiring.Component):
                 self.announce(m, Operation.DRAW)
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
-                m.d.sync += [self.frame_cycles.eq(0), self._scans.eq(self.scan_start)]
-                for place, background in enumerate(self._backgrounds):
-                    with m.If(self.pictures.front != place):
-                        m.d.sync += background.eq(self._body)
+                m.d.sync += [self.frame_cycles.eq(0), self.scans.eq(self.scan_start)]
+                self._nodes.start(m, self)
                 m.next = "START_FRAME"
             with m.Case(Opcode.FRAME_END):
                 m.d.comb += self.commands.ready.eq(1)
@@ -297,7 +308,7 @@ class CentralBroadcastController(wiring.Component):
     def _hold_to_picture(self, m):
         """The packet is the offered prepared triangle, without rows past the picture."""
         layout = prepared_triangle_layout(self.configuration)
-        offered, draw = data.View(layout, self._body[:layout.size]), self._packet.body.draw
+        offered, draw = data.View(layout, self.body[:layout.size]), self._packet.body.draw
         heights = {interlace.height for interlace in self.configuration.interlaces()}
         m.d.comb += draw.eq(offered)
         if min(heights) == (1 << self.configuration.y_bits) - 1:
@@ -323,22 +334,14 @@ class CentralBroadcastController(wiring.Component):
 
     def _show(self, m):
         """From the end of a frame's commands until its picture is shown."""
-        pictures = self.pictures
         with m.State("DRAWING"), m.If(self.quiet):
-            drawn = Signal.like(self.frame_cycles, name="drawn")
-            m.d.sync += drawn.eq(self.frame_cycles)
-            merges = self._nodes.drawn(m)
+            m.d.sync += self.drawn_cycles.eq(self.frame_cycles)
+            self._nodes.drawn(m)
             m.next = "REPORT_DRAWN"
         with m.State("REPORT_DRAWN"):
-            self.respond(m, ResponseKind.FRAME_DRAWN, drawn, merges)
-        self._nodes.report_merged(m, self, drawn)
-        with m.State("SWAP"), m.If(self.scan_start):
-            # Every pixel of the scan that begins here is fetched after this edge.
-            shown = Signal.like(self._scans, name="shown")
-            m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(self._scans)]
-            m.next = self._nodes.after_swap
-        with m.State("REPORT_SHOWN"):
-            self.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")
+            self.respond(m, ResponseKind.FRAME_DRAWN, self.drawn_cycles,
+                         self._nodes.after_drawn(m, self))
+        self._nodes.show(m, self)
 
     def _refuse(self, m):
         """The machine does not draw: an error at boot and in answer to every command."""
@@ -357,7 +360,7 @@ class CentralBroadcastController(wiring.Component):
         pictures = self.pictures
         m.d.comb += [
             tags.back.eq(~pictures.front),
-            tags.swept.eq(pictures.swept),
+            tags.swept.eq(self._nodes.swept(self)),
             pictures.sweep.eq(tags.sweep),
             pictures.depth_tag.eq(tags.depth),
             *(line.eq(tag) for line, tag in zip(pictures.color_tag, tags.color, strict=True)),

@@ -1,97 +1,66 @@
 """What the controller does besides, where merge cards end nodes."""
 
-from typing import ClassVar
-
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib import stream
+from amaranth.lib.wiring import In
 
 from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
-from ..backplane.words import Operation, response_fields
-from ..merging.tree_words import TreeLines
-from .tree_steps import TreeSteps
+from ..backplane.words import Operation, response_fields, response_layout
+from .one_node import OneNode
+from .presenter import Presenter
 
-__all__ = ["NodeControl", "OneNode", "node_control"]
-
-
-class OneNode:
-    """What takes the place of a ``NodeControl`` where there are no merge cards: it adds nothing."""
-
-    members: ClassVar[dict[str, wiring.Member]] = {}
-    #: Commands that are not the controller's own.
-    opcodes = ()
-    #: The states after the report of the units, and after a swap.
-    after_units = "CHECK_UNITS"
-    after_swap = "REPORT_SHOWN"
-
-    def add_to(self, m, controller):
-        """What goes on beside the commands."""
-
-    def all_units(self, controller):
-        """Memory units in the cage."""
-        return controller.total
-
-    def refused(self, controller):
-        """The cage draws nothing."""
-        return controller.unsupported_units
-
-    def fault(self, controller):
-        """Why; only where it does not."""
-        return Fault.UNITS_UNSUPPORTED
-
-    def commands(self, m, controller):
-        """Inside the switch over opcodes."""
-
-    def states(self, m, controller):
-        """Further states."""
-
-    def drawn(self, m):
-        """Inside the clock in which all is drawn; returns the state after its report."""
-        return "SWAP"
-
-    def report_merged(self, m, controller, drawn):
-        """The states from there to the swap; ``drawn``: the clocks until all was."""
+__all__ = ["NodeControl"]
 
 
 class NodeControl(OneNode):
-    """Adds up the nodes at boot, has lists loaded and drawn, and reads merged depths.
+    """Adds up the nodes at boot, has lists loaded and drawn, and hands what is drawn on to a
+    ``Presenter``: while that has it merged and shown, lists may be changed.
 
-    This is no component: it adds members, signals and states to the controller that has it, so
-    that a controller without nodes stays as it is.
+    A subclass says how its cards merge; this is for those that have nothing left to merge when all
+    is drawn.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
+        self.presenter = Presenter()
         #: Memory units of all nodes, and what is wrong with them.
         self.units = Signal(commands.RESPONSE_VALUE_BITS, name="node_units")
         self.unsupported = Signal(name="node_unsupported")
         self.differ = Signal(name="nodes_differ")
-        #: The steps of a tree merge, and the clocks until they were done.
-        self.steps = (TreeSteps(node_bits=configuration.node_bits) if configuration.sends_drawn
-                      else None)
-        self.merged = Signal(commands.RESPONSE_VALUE_BITS, name="merged")
+        self._answers = stream.Signature(response_layout()).create(path=("answers",))
 
     @property
     def members(self):
-        configuration, members = self.configuration, {}
-        members["nodes"] = In(configuration.node_bits)
-        if configuration.list_words:
-            members["lists_full"] = In(1)
-        if configuration.sends_drawn:
-            members["tree"] = Out(TreeLines(node_bits=configuration.node_bits))
-        if configuration.scans_rank:
-            members |= {"shown": In(1), "read_scan": Out(1), "scan_read": In(1),
-                        "depths": In(stream.Signature(configuration.depth_bits))}
-        return members
+        configuration = self.configuration
+        return {"nodes": In(configuration.node_bits),
+                **({"lists_full": In(1)} if configuration.list_words else {})}
 
     after_units = "REPORT_NODES"
+    #: The state after the report of the nodes.
+    after_nodes = "CHECK_UNITS"
+
+    # What of the merging differs from one kind of cards to the next.
+
+    def merged(self, controller):
+        """The picture that was drawn last can be scanned."""
+        return C(1)
+
+    def shown(self, controller):
+        """No scan reads the picture any more that was shown before the last swap."""
+        return C(1)
+
+    def merge_cycles(self, controller):
+        """Clocks from the frame's start until the picture could be scanned."""
+        return controller.drawn_cycles
+
+    # All that is common.
 
     def add_to(self, m, controller):
         self._count(m, controller)
-        if self.steps is not None:
-            self._add_steps(m, controller)
+        self._present(m, controller)
+        self._take_turns(m, controller)
 
     def _count(self, m, controller):
         """Nodes' reports as they pass: each must be like the first one."""
@@ -112,6 +81,45 @@ class NodeControl(OneNode):
                 first.eq(report.units),
             ]
 
+    def _present(self, m, controller):
+        m.submodules.presenter = presenter = self.presenter
+        m.d.comb += [
+            presenter.merged.eq(self.merged(controller)),
+            presenter.cycles.eq(self.merge_cycles(controller)),
+            presenter.scan_start.eq(controller.scan_start),
+            presenter.scans.eq(controller.scans),
+            presenter.shown.eq(self.shown(controller)),
+        ]
+        with m.If(presenter.swap):
+            m.d.sync += self.front(controller).eq(~self.front(controller))
+
+    def _take_turns(self, m, controller):
+        """Two give responses: what one has begun to offer it offers until that is taken."""
+        own, presented, responses = self._answers, self.presenter.responses, controller.responses
+        begun = Signal(name="answer_begun")  # by what takes commands, and not by the presenter
+        turn = Signal(name="presenter_turn")
+        m.d.comb += [
+            turn.eq(presented.valid & ~begun),
+            responses.valid.eq(own.valid | presented.valid),
+            responses.payload.eq(Mux(turn, presented.payload, own.payload)),
+            own.ready.eq(responses.ready & ~turn),
+            presented.ready.eq(responses.ready & turn),
+        ]
+        m.d.sync += begun.eq(own.valid & ~own.ready & ~turn)
+
+    def answers(self, controller):
+        return self._answers
+
+    def in_turn(self, controller, ready):
+        """Lists are not what is presented; for all else there is no memory sooner."""
+        return ready & (self.is_for_lists(controller) | self.presenter.idle)
+
+    def is_for_lists(self, controller):
+        """The offered command changes lists, and nothing else."""
+        if not self.configuration.list_words:
+            return C(0)
+        return (controller.opcode == Opcode.LOAD) | (controller.opcode == Opcode.CLEAR_LISTS)
+
     def all_units(self, controller):
         return self.units
 
@@ -122,46 +130,16 @@ class NodeControl(OneNode):
         units = controller.unsupported_units | self.unsupported
         return Mux(units, Fault.UNITS_UNSUPPORTED, Fault.NODES_DIFFER)
 
-    def _add_steps(self, m, controller):
-        """Where nodes merge in a tree."""
-        m.submodules.steps = steps = self.steps
-        wiring.connect(m, steps.lines, wiring.flipped(controller.tree))
-        m.d.comb += [steps.nodes.eq(controller.nodes), steps.quiet.eq(controller.quiet)]
-        with m.If(steps.done):
-            m.d.sync += self.merged.eq(controller.frame_cycles)
+    def after_drawn(self, m, controller):
+        m.d.comb += self.presenter.start.eq(self._answers.ready)
+        return "COMMAND"
 
-    def drawn(self, m):
-        if self.steps is None:
-            return "REPORT_MERGED"
-        m.d.comb += self.steps.start.eq(1)
-        return "MERGING"
-
-    def report_merged(self, m, controller, drawn):
-        """Where the scan merges, nothing is left to be done."""
-        if self.steps is not None:
-            with m.State("MERGING"), m.If(self.steps.idle):
-                m.next = "REPORT_MERGED"
-        with m.State("REPORT_MERGED"):
-            controller.respond(m, ResponseKind.MERGED,
-                               drawn if self.steps is None else self.merged, "SWAP")
-
-    @property
-    def after_swap(self):
-        return "SWAPPED" if self.configuration.scans_rank else "REPORT_SHOWN"
-
-    @property
-    def opcodes(self):
-        return (Opcode.READ_DEPTH,) if self.configuration.scans_rank else ()
+    def show(self, m, controller):
+        """That is the presenter's."""
 
     def commands(self, m, controller):
         if self.configuration.list_words:
             self._draw_lists(m, controller)
-        if self.configuration.scans_rank:
-            with m.Case(Opcode.READ_DEPTH):
-                m.d.comb += [controller.read_scan.eq(controller.quiet),
-                             controller.commands.ready.eq(controller.quiet)]
-                with m.If(controller.quiet):
-                    m.next = "READ_SCAN"
 
     def _draw_lists(self, m, controller):
         for opcode, full in ((Opcode.CLEAR_LISTS, C(0)),
@@ -174,30 +152,7 @@ class NodeControl(OneNode):
 
     def states(self, m, controller):
         with m.State("REPORT_NODES"):
-            controller.respond(m, ResponseKind.NODES, controller.nodes, "CHECK_UNITS")
+            controller.respond(m, ResponseKind.NODES, controller.nodes, self.after_nodes)
         if self.configuration.list_words:
             with m.State("LIST_FULL"):
                 controller.respond(m, ResponseKind.ERROR, Fault.LIST_FULL, "COMMAND")
-        if self.configuration.scans_rank:
-            # Every node shows the new picture before one draws into what was shown.
-            with m.State("SWAPPED"), m.If(controller.shown == controller.pictures.front):
-                m.next = "REPORT_SHOWN"
-            with m.State("READ_SCAN"):
-                self._pass_depths(m, controller)
-
-    def _pass_depths(self, m, controller):
-        """The words of the scan go to the host."""
-        responses, depths = controller.responses, controller.depths
-        m.d.comb += [
-            responses.valid.eq(depths.valid),
-            responses.payload.kind.eq(ResponseKind.DEPTH),
-            responses.payload.value.eq(depths.payload),
-            depths.ready.eq(responses.ready),
-        ]
-        with m.If(controller.scan_read):
-            m.next = "COMMAND"
-
-
-def node_control(configuration: MachineConfiguration) -> OneNode:
-    """What a machine's controller has."""
-    return NodeControl(configuration=configuration) if configuration.node_bits else OneNode()

@@ -5,21 +5,19 @@ from amaranth.lib import data, memory, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
-from ..backplane.connectors import Connector, PictureLines, ScanLines
+from ..backplane.connectors import Connector, PictureLines
 from ..backplane.id_increment import IdIncrement
-from ..mapping.interlace import ScanAddress
 from ..wires import wires
 from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
+from .scan_part import ScanPart
 from .send_part import SendPart
-from .tag_sweep import TagSweep
+from .snoop_part import SnoopPart
+from .sweep_part import add_sweep
 from .two_port_memory import TwoPortMemory
 from .word_parts import pixel_layout, word_parts
 
 __all__ = ["MemoryUnit"]
-
-#: Address bits that tell whether a write may go to the word that is swept: a false alarm in 16.
-COMPARED_BITS = 4
 
 
 class MemoryUnit(wiring.Component):
@@ -30,7 +28,7 @@ class MemoryUnit(wiring.Component):
     processing element, else a read; whoever waits sees ``busy``.  With two nobody
     ever waits.  The scan's colour goes into an output register, so the processing
     element has the port in the meantime; while the scan shows a pixel of this unit it
-    goes on to the registers that drive the video bus.
+    goes on to the registers that drive the video bus (``ScanPart``).
 
     Each part of a word (``word_parts``) has a tag beside it.  A part whose tag is not the current
     one reads as background: depth 2^d - 1, and the video bus is told that nothing has
@@ -49,9 +47,12 @@ class MemoryUnit(wiring.Component):
     total: In(id_bits)
         Number of memory units in the cage.
     scan: In(ScanLines)
+        Not where frame units are scanned.
     pictures: In(PictureLines)
     merge: In(SendLines)
-        Only where nodes merge in a tree (``SendPart``).
+        Only where nodes merge in a tree (``SendPart``) or on a bus (``SnoopPart``).
+    heard: In(heard_pixel_layout)
+        Only where nodes merge on a bus.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -61,20 +62,26 @@ class MemoryUnit(wiring.Component):
         self.memory: OnePortMemory | TwoPortMemory = kind(
             words=configuration.words, depth_bits=configuration.rank_bits,
             tag_bits=configuration.tag_bits, parts=self._parts)
-        self._send = SendPart(configuration=configuration) if configuration.sends_drawn else None
+        self._scan = None if configuration.snoops else ScanPart(configuration=configuration)
+        #: What the unit does besides in a cage of that kind, if anything.
+        self._besides: SendPart | SnoopPart | None = None
+        if configuration.sends_drawn:
+            self._besides = SendPart(configuration=configuration)
+        elif configuration.snoops:
+            self._besides = SnoopPart(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
             "total": In(configuration.id_bits),
-            "scan": In(ScanLines(configuration)),
+            **({} if self._scan is None else self._scan.members),
             "pictures": In(PictureLines(configuration)),
-            **({} if self._send is None else self._send.members),
+            **({} if self._besides is None else self._besides.members),
         })
 
     @property
     def storages(self) -> list[memory.Memory]:
         """The RAM of the words, and that which says which of them were drawn."""
-        drawn = [] if self._send is None else self._send.storages
+        drawn = [] if self._besides is None else self._besides.storages
         return [*self.memory.storages, *drawn]
 
     def elaborate(self, platform):
@@ -90,12 +97,17 @@ class MemoryUnit(wiring.Component):
         current = Signal(len(self._parts))
         m.d.comb += current.eq(Cat(part_answer(self.memory.access, part).tag == self._tag(part)
                                    for part in self._parts))
-        self._scan(m, number, [current[place] for place, part in enumerate(self._parts)
-                               if part.picture is not None])
+        of_pictures = [current[place] for place, part in enumerate(self._parts)
+                       if part.picture is not None]
+        if self._scan is not None:
+            self._scan.add_to(m, self, number, of_pictures, fetch=self.scan.fetch,
+                              show=self.scan.show)
         self._serve(m, number, current)
-        self._sweep(m, current)
-        if self._send is not None:
-            self._send.add_to(m, self, *self._depth_read(current))
+        add_sweep(m, self, words=self.configuration.words, parts=self._parts, current=current)
+        if isinstance(self._besides, SnoopPart):
+            self._besides.add_to(m, self, of_pictures)
+        elif self._besides is not None:
+            self._besides.add_to(m, self, *self._depth_read(current))
 
         wiring.connect(wires(m, "response_wires"), wiring.flipped(self.left.response),
                        wiring.flipped(self.right.response))
@@ -107,49 +119,14 @@ class MemoryUnit(wiring.Component):
             return self.pictures.depth_tag
         return self.pictures.color_tag[part.picture]
 
-    def _scan(self, m, number, current):
-        """Fetch, read, capture, drive: one clock each; ``current`` of both pictures."""
-        m.submodules.fetch = fetch = ScanAddress(configuration=self.configuration)
-        m.submodules.show = show = ScanAddress(configuration=self.configuration)
-        access, pictures = self.memory.access, self.pictures
-        captured = Signal()
-        pictures_read = access.pixel if self.configuration.scans_rank else access.color
-        output = Signal(len(pictures_read[0].value))
-        drawn = Signal()
-        scan = wires(m, "scan_wires")
-        for address, asked in ((fetch, self.scan.fetch), (show, self.scan.show)):
-            scan.d.comb += [
-                address.total.eq(self.total), address.id.eq(number),
-                address.x.eq(asked.x), address.y.eq(asked.y),
-            ]
-        shown = show.selected & drawn
-        color = output
-        if self.configuration.scans_rank:
-            pixel = data.View(pixel_layout(self.configuration.rank_bits), output)
-            color = pixel.color
-            scan.d.sync += self.scan.rank.eq(Mux(shown, pixel.depth, 0))
-        scan.d.sync += [self.scan.drawn.eq(shown), self.scan.video.eq(Mux(shown, color, 0))]
-        scan_read = Signal()
-        scan_address = Signal(self.configuration.address_bits)
-        m.d.sync += [
-            scan_read.eq(self.scan.fetch.valid & fetch.fetch),
-            scan_address.eq(fetch.address),
-            captured.eq(scan_read),
-        ]
-        m.d.comb += [access.scan.eq(scan_read), access.scan_address.eq(scan_address)]
-        with m.If(captured):
-            m.d.sync += [
-                output.eq(Mux(pictures.front, pictures_read[1].value, pictures_read[0].value)),
-                drawn.eq(Mux(pictures.front, current[1], current[0])),
-            ]
-
     def _serve(self, m, number, current):
         """What the processing element asks for, and its answer; ``current`` of all parts."""
         bus, onward = self.left.lines, self.right.lines
         write, read = bus.write, bus.read
         access, pictures = self.memory.access, self.pictures
         scanned = access.scan if self.configuration.memory_ports == 1 else C(0)
-        written = self._pixel_in(write) if self.configuration.scans_rank else self._parts_in(write)
+        two_depths = self.configuration.keeps_two_depths
+        written = self._pixel_in(write) if two_depths else self._parts_in(write)
         valid, value = self._depth_read(current)
         write_here = Signal()
         read_here = Signal()
@@ -196,29 +173,9 @@ class MemoryUnit(wiring.Component):
     def _depth_read(self, current):
         """Whether the depth that was read is of this frame, and the depth."""
         access, front = self.memory.access, self.pictures.front
-        if not self.configuration.scans_rank:
+        if not self.configuration.keeps_two_depths:
             [place] = [place for place, part in enumerate(self._parts) if part.kind == "depth"]
             return current[place], access.depth.value
         back = Mux(front, access.pixel[0].value, access.pixel[1].value)
         return (Mux(front, current[0], current[1]),
                 data.View(pixel_layout(self.configuration.rank_bits), back).depth)
-
-    def _sweep(self, m, current):
-        """Take old tags out; ``current`` of all parts."""
-        m.submodules.tag_sweep = sweep = TagSweep(words=self.configuration.words,
-                                                  parts=len(self._parts))
-        access, pictures = self.memory.access, self.pictures
-        m.d.comb += [
-            sweep.start.eq(pictures.sweep),
-            sweep.initialise.eq(pictures.initialise),
-            pictures.swept.eq(sweep.idle),
-            access.sweep.eq(sweep.sweep),
-            access.erase.eq(sweep.erase),
-            access.sweep_address.eq(sweep.address),
-            sweep.busy.eq(access.sweep_busy),
-            sweep.scan.eq(access.scan),
-            sweep.stale.eq(Cat(part_answer(access, part).tag.any() for part in self._parts)
-                           & ~current),
-        ]
-        near = (access.write_address ^ sweep.address)[:COMPARED_BITS] == 0
-        m.d.comb += sweep.overwritten.eq(access.write & ~access.write_busy & near)

@@ -9,7 +9,7 @@ from amaranth.lib import data
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import COLOR_BITS
 
-__all__ = ["PARTS", "PICTURE_PARTS", "Part", "part_layout", "pixel_layout", "value_bits",
+__all__ = ["FRAME_PARTS", "PARTS", "PICTURE_PARTS", "Part", "part_layout", "pixel_layout", "value_bits",
            "word_parts"]
 
 
@@ -40,16 +40,20 @@ PARTS = (
 )
 
 
-#: Where the scan merges: the picture shown still has its depths, and one tag is for both.
+#: Where the picture that is scanned, or merged, still has its depths; one tag is for both.
 PICTURE_PARTS = (
     Part("picture_0", "pixel", "either", picture=0),
     Part("picture_1", "pixel", "either", picture=1),
 )
 
 
+#: Where nodes send to frame units what these show.
+FRAME_PARTS = tuple(part for part in PARTS if part.picture is not None)
+
+
 def word_parts(configuration: MachineConfiguration) -> tuple[Part, ...]:
     """The parts of the words of a machine's memory units."""
-    return PICTURE_PARTS if configuration.scans_rank else PARTS
+    return PICTURE_PARTS if configuration.keeps_two_depths else PARTS
 
 
 def pixel_layout(depth_bits: int) -> data.StructLayout:

@@ -6,6 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.ranges import COLOR_BITS
 from .drawn_map import DrawnMap
+from .picture_maps import PictureMaps
 from .send_lines import sent_pixel_layout
 
 __all__ = ["PictureSender"]
@@ -32,11 +33,13 @@ class PictureSender(wiring.Component):
         Of the memory unit.
     depth_bits: int, positive
         Of what is kept of a pixel to compare it by.
+    two_pictures: bool
+        One is drawn into while the other one is sent (``PictureMaps``).
 
     Members
     -------
     write: In(1), write_address: In(range(words))
-        A word is written; not while there is ``more``.
+        A word is written; not while there is ``more``, where there is one picture.
     settled: Out(1)
         All writes of earlier clocks are marked, and nothing is listed.
     start: In(1)
@@ -49,16 +52,22 @@ class PictureSender(wiring.Component):
         ... and this is it in the next clock: whether it is of this frame, and what it holds.
     pixels: Out(stream of sent_pixel_layout)
         In ascending order of their addresses.
+    front: In(1)
+        Which picture is sent, the other one is written; only where there are two.
+    delete: In(1), delete_address: In(range(words))
+        A word of the front one need not be sent; not while there is ``more``; only where there
+        are two.
 
     Raises ``ValueError`` for a number out of range.
     """
 
     latency = DrawnMap.latency + 3
 
-    def __init__(self, *, words: int, depth_bits: int):
+    def __init__(self, *, words: int, depth_bits: int, two_pictures: bool = False):
         if depth_bits < 1:
             raise ValueError(f"depth_bits must be positive, not {depth_bits!r}")
-        self.map = DrawnMap(words=words)
+        self.map = PictureMaps(words=words) if two_pictures else DrawnMap(words=words)
+        self.two_pictures = two_pictures
         self.depth_bits = depth_bits
         address = range(max(2, words))
         pixel = sent_pixel_layout(address_bits=Shape.cast(address).width, depth_bits=depth_bits)
@@ -74,6 +83,8 @@ class PictureSender(wiring.Component):
             "depth": In(depth_bits),
             "color": In(COLOR_BITS),
             "pixels": Out(stream.Signature(pixel)),
+            **({"front": In(1), "delete": In(1), "delete_address": In(address)}
+               if two_pictures else {}),
         })
 
     @property
@@ -113,6 +124,9 @@ class PictureSender(wiring.Component):
             waiting.r_en.eq(self.pixels.ready),
             self.more.eq(drawn.listing | listed.r_rdy | answering | (waiting.level > 1)),
         ]
+        if self.two_pictures:
+            m.d.comb += [getattr(drawn, name).eq(getattr(self, name))
+                         for name in ("front", "delete", "delete_address")]
         m.d.sync += [
             answering.eq(self.reads.valid & self.reads.ready),
             address.eq(self.reads.payload),

@@ -17,7 +17,7 @@ class NodeGate(wiring.Component):
     """Passes on to a node's processing elements what is for this node, in the same clock.
 
     Triangles say which node is to draw them; the others neither see them nor hold them up.  Depths
-    are read from node 0.  Everything else is for all nodes.
+    are read from node 0, where it has the merged picture's.  Everything else is for all nodes.
 
     With a list memory (``list_words``) triangles that are to be loaded go there, and the node draws
     its own list as soon as it is told to: as all nodes do so at the same time, there are as many
@@ -68,8 +68,7 @@ class NodeGate(wiring.Component):
         m.d.comb += [
             elsewhere.eq(((packet.operation == Operation.DRAW)
                           | (packet.operation == Operation.LOAD)) & ~here),
-            for_elements.eq(~elsewhere & ((packet.operation != Operation.READ_DEPTH)
-                                          | (self.number == 0))),
+            for_elements.eq(~elsewhere & self._reads),
             own.strobe.eq(broadcast.strobe & for_elements),
             own.packet.eq(packet),
             broadcast.ready.eq(own.ready | elsewhere),
@@ -78,6 +77,13 @@ class NodeGate(wiring.Component):
         if self._list is not None:
             self._add_list(m, self._list, here, elsewhere, for_elements)
         return m
+
+    @property
+    def _reads(self):
+        """Where depths are to be read, this node's are."""
+        if self.configuration.snoops:
+            return C(1)
+        return (self.broadcast.packet.operation != Operation.READ_DEPTH) | (self.number == 0)
 
     def _add_list(self, m, list_, here, elsewhere, for_elements):
         m.submodules.list = list_

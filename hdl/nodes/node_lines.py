@@ -27,7 +27,8 @@ class Node(NamedTuple):
 
 def connect_nodes(m: Module, configuration: MachineConfiguration, controller, generator,
                   nodes: Sequence[Node]) -> None:
-    """Everything between controller, scan generator and ``nodes``, from left to right."""
+    """Everything between controller, scan generator and ``nodes``, from left to right; of nodes that
+    merge on a bus not what is for merging or showing the picture."""
     cards = [node.merge_card for node in nodes]
     fixed = wires(m, "total_wires")
     fixed.d.comb += [controller.total.eq(cards[0].left.id),
@@ -43,7 +44,7 @@ def connect_nodes(m: Module, configuration: MachineConfiguration, controller, ge
         fixed.d.comb += controller.lists_full.eq(reduce(or_, (card.lists_full for card in cards)))
     if configuration.sends_drawn:
         connect_tree(m, controller, generator, nodes)
-    else:
+    elif configuration.scans_rank:
         _connect_chain(m, controller, generator, nodes)
 
 

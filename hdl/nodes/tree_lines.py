@@ -8,7 +8,7 @@ from operator import and_, or_
 from amaranth.hdl import *
 from amaranth.lib import wiring
 
-from ..lines_to_all import connect_pictures, connect_scan
+from ..lines_to_all import connect_pictures, connect_scan, connect_senders
 from ..wires import wires
 
 __all__ = ["connect_tree"]
@@ -34,21 +34,8 @@ def connect_tree(m: Module, controller, generator, nodes: Sequence) -> None:
         wiring.connect(wires(m, f"piece_{number}_wires"), right.to_left, left.from_right)
     for number, node in enumerate(nodes):
         part = wires(m, f"node_{number}_merge_wires")
-        _connect_units(part, node.merge_card.units, node.memory_units)
+        connect_senders(part, node.merge_card.units, node.memory_units)
         _connect_elements(part, node.merge_card.received, node.processing_elements)
-
-
-def _connect_units(part, lines, units):
-    """``SendLines``; settled: wired and, the rest wired or."""
-    answers = [unit.merge for unit in units]
-    part.d.comb += lines.settled.eq(reduce(and_, (answer.settled for answer in answers), C(1)))
-    part.d.comb += [
-        Value.cast(getattr(lines, name)).eq(
-            reduce(or_, (Value.cast(getattr(answer, name)) for answer in answers), C(0)))
-        for name in ("valid", "pixel", "more")]
-    for answer in answers:
-        part.d.comb += [getattr(answer, name).eq(getattr(lines, name))
-                        for name in ("start", "unit", "ready")]
 
 
 def _connect_elements(part, received, elements):

@@ -144,8 +144,8 @@ THOUGHTS = (
             "(Opcode.DRAW_LISTS, controller.lists_full)", "(Opcode.DRAW_LISTS, C(0))",
             "tests/machine/nodes/test_faults_of_nodes.py::test_a_list_that_is_too_long"),
     Thought("nodes draw the next picture before all show the last one",
-            "hdl/controller/node_control.py",
-            "controller.shown == controller.pictures.front", "1",
+            "hdl/controller/merge_control.py",
+            "self._all_show & (controller.shown == controller.pictures.front)", "C(1)",
             "tests/machine/nodes/test_many_nodes.py"),
 )
 
