@@ -11,7 +11,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import CHAIN_MERGE, TREE_MERGE
+from ...golden.specification.card_order import (
+    CHAIN_MERGE,
+    MEMORY_UNIT,
+    PROCESSING_ELEMENT,
+    TREE_MERGE,
+    parse_cards,
+)
 from ...golden.specification.errors import InputError
 from ..comparison.cage import Cage, CageJob, Refused
 from ..comparison.comparison_facts import cage_facts
@@ -31,22 +37,6 @@ MERGE_SCENES = ("teapot", "sphereflake")
 
 
 @dataclass(frozen=True)
-class MergeCage:
-    """``boards`` of ``fpga.boards.BOARDS``: element, memory unit, merge card, that its cards are
-    placed as."""
-
-    merge: str
-    cards: str
-    boards: tuple[str, str, str]
-
-
-CAGES = (
-    MergeCage(CHAIN_MERGE, f"{NODES}x(PMMC)", ("element", "unit-of-chain", "chain-merge")),
-    MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", ("element", "unit-of-tree", "tree-merge")),
-)
-
-
-@dataclass(frozen=True)
 class BoardFigures:
     """On an ECP5 of speed grade 6: LUT4 + 2 CCU2C, and the median clock rate."""
 
@@ -55,10 +45,35 @@ class BoardFigures:
 
 
 @dataclass(frozen=True)
+class MergeCage:
+    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``."""
+
+    merge: str
+    cards: str
+    boards: Mapping[str, str]
+
+    def luts(self, boards: Mapping[str, BoardFigures]) -> int | None:
+        """Of all cards; None where some of them were not measured."""
+        if not all(name in boards for name in self.boards.values()):
+            return None
+        return sum(boards[self.boards[card]].luts for card in parse_cards(self.cards))
+
+
+def _boards(unit: str, merge: str, card: str) -> dict[str, str]:
+    return {PROCESSING_ELEMENT: "element", MEMORY_UNIT: unit, merge: card}
+
+
+CAGES = (
+    MergeCage(CHAIN_MERGE, f"{NODES}x(PMMC)",
+              _boards("unit-of-chain", CHAIN_MERGE, "chain-merge")),
+    MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", _boards("unit-of-tree", TREE_MERGE, "tree-merge")),
+)
+
+
+@dataclass(frozen=True)
 class MergeCosts:
     """A cage that drew a scene; ``facts`` as in ``comparison.json``, ``board`` of its merge card
-    and ``cage_luts`` of all its elements, memory units and merge cards, where they were measured.
-    """
+    and ``cage_luts`` of all its cards, where they were measured."""
 
     cage: MergeCage
     scene: str
@@ -110,7 +125,7 @@ def board_figures(measure: bool, step: Callable[[str], None]) -> dict[str, Board
     from ..speed.cases import SIZE
 
     found = {}
-    for name in dict.fromkeys(name for cage in CAGES for name in cage.boards):
+    for name in dict.fromkeys(name for cage in CAGES for name in cage.boards.values()):
         part = BOARDS[name].part("P" + "M" * UNITS, SIZE, SIZE)
         if measure:
             def board_step(doing: str, name: str = name) -> None:
@@ -130,12 +145,6 @@ def board_figures(measure: bool, step: Callable[[str], None]) -> dict[str, Board
 def merge_costs(jobs: Sequence[MergeJob], facts: Sequence[dict[str, Any]],
                 boards: Mapping[str, BoardFigures]) -> list[MergeCosts]:
     """What the jobs found, with their boards."""
-    costs = []
-    for job, found in zip(jobs, facts, strict=True):
-        luts = None
-        if all(name in boards for name in job.cage.boards):
-            element, unit, card = (boards[name].luts for name in job.cage.boards)
-            luts = NODES * (element + UNITS * unit + card)
-        costs.append(MergeCosts(job.cage, job.scene.name, found,
-                                boards.get(job.cage.boards[-1]), luts))
-    return costs
+    return [MergeCosts(job.cage, job.scene.name, found,
+                       boards.get(job.cage.boards[job.cage.merge]), job.cage.luts(boards))
+            for job, found in zip(jobs, facts, strict=True)]

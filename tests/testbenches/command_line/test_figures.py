@@ -45,7 +45,7 @@ def place(tmp_path, kept, recording, monkeypatch) -> Path:
     monkeypatch.setattr(figure_scenes, "paper_rows", lambda: tuple(
         replace(row, triangles=60 * row.triangles) for row in paper_rows()))
     monkeypatch.setattr(cox_hanrahan, "CAGES", (
-        MergeCage("T", "2x(PMT)", ("element", "unit-of-tree", "tree-merge")),))
+        MergeCage("T", "2x(PMT)", {"P": "element", "M": "unit-of-tree", "T": "tree-merge"}),))
     return tmp_path
 
 

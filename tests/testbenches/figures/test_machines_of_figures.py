@@ -26,7 +26,7 @@ from cardcage.testbenches.fpga.place_and_route import Placement
 from cardcage.testbenches.frames.responses import MachineError
 
 SCENE = FigureScene("few", "random:n=12,size=5,seed=5")
-CHAIN = MergeCage("C", "2x(PMC)", ("element", "unit-of-chain", "chain-merge"))
+CHAIN = MergeCage("C", "2x(PMC)", {"P": "element", "M": "unit-of-chain", "C": "chain-merge"})
 POINT = PointJob("2x(PMT)", "round robin", 1, SCENE, (8, 8), "pysim")
 
 
@@ -49,7 +49,7 @@ def test_a_cage_of_the_table():
               "chain-merge": BoardFigures(100, 150.0)}
     [cost] = merge_costs([job], [facts], boards)
     assert cost.differences == [] and cost.board == boards["chain-merge"]
-    assert cost.cage_luts == 16 * (1000 + 2 * 200 + 100)
+    assert cost.cage_luts == 2 * (1000 + 200 + 100)
     assert cost.fragments_per_clock == facts["fragments"] / facts["cycles"]["draw"]
     assert cost.per_lut == cost.fragments_per_clock / cost.cage_luts
     [without] = merge_costs([job], [facts], {"element": boards["element"]})
@@ -114,7 +114,7 @@ def test_boards_of_all_cages_can_be_placed(monkeypatch):
     monkeypatch.setattr("cardcage.testbenches.fpga.place_and_route.place_and_route", place)
     assert board_figures(False, told.append) == {} and told == []  # nothing was placed before
     found = board_figures(True, told.append)
-    names = list(dict.fromkeys(name for cage in CAGES for name in cage.boards))
+    names = list(dict.fromkeys(name for cage in CAGES for name in cage.boards.values()))
     assert list(found) == names and set(names) <= set(BOARDS)
     assert found["element"] == BoardFigures(9, 111.0)
     assert told[:2] == ["element: synthesising", "element: placing"]
