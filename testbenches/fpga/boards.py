@@ -54,6 +54,7 @@ class Board:
     ``changes``  fields of the configuration in which it differs from the rest
     ``mapping``  as of ``Part``
     ``merge``    the card that ends nodes of the cards, which there are two of; none where empty
+    ``cage``     of a board that is of no node of the cards: all cards of the machine
     """
 
     title: str
@@ -62,22 +63,24 @@ class Board:
     changes: Mapping[str, Any] = field(default_factory=dict)
     mapping: LogicMapping = "area"
     merge: str = ""
+    cage: str = ""
 
     def part(self, cards: str, width: int, height: int) -> Part:
         """The board in a machine that is exact for any triangle on the screen.  Raises
         ``InputError``."""
         machine: dict[str, Any] = {"sub_bits": SUB_BITS, "depth_bits": DEPTH_BITS,
                                    "shading": "flat", "memory_ports": 2} | dict(self.changes)
-        if self.merge:
-            machine["packet"] = "contiguous"  # no order beside the depths
-            cards = f"2x({cards}{self.merge})"
-        if self.merge == SNOOP_MERGE:
-            cards += 2 * FRAME_UNIT
+        if self.merge or self.cage:
+            machine["packet"] = "contiguous"  # no rounds beside the depths
+        frame_units = 2 * FRAME_UNIT if self.merge == SNOOP_MERGE else ""
         configuration = MachineConfiguration(
-            cards=cards,
+            cards=self.cage or (f"2x({cards}{self.merge}){frame_units}" if self.merge else cards),
             width=width, height=height, **machine, **on_screen_widths(width, height, SUB_BITS))
         return Part(configuration, self.name, self.build, self.mapping)
 
+
+#: Direct merges grow with the product of elements and units; of this one the parts are measured.
+DIRECT = "4x(P)D4x(M)"
 
 #: The rows, by the names that ``--boards`` takes.
 BOARDS = {
@@ -97,6 +100,15 @@ BOARDS = {
     "tree-merge": Board("tree merge", "tree_merge", merge=TREE_MERGE),
     "snoop-merge": Board("snoop merge", "snoop_merge", merge=SNOOP_MERGE),
     "frame-unit": Board("frame unit", "frame_unit", frame_unit, merge=SNOOP_MERGE),
+    "element-of-direct": Board("direct element, flat, 4x4", "direct_element", cage=DIRECT),
+    "unit-of-direct": Board("memory unit, 2 ports, own depth test, 4x4", "memory_unit",
+                            memory_unit, cage=DIRECT),
+    "direct-merge": Board("direct merge 4x4, 4 for each unit", "direct_merge", mapping="plain",
+                          cage=DIRECT),
+    "direct-merge-2": Board("direct merge 4x4, 2 for each unit", "direct_merge",
+                            changes={"queue": 2}, mapping="plain", cage=DIRECT),
+    "direct-merge-element": Board("direct merge 4x4, a queue an element", "direct_merge",
+                                  changes={"queue": "element"}, mapping="plain", cage=DIRECT),
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
