@@ -12,6 +12,7 @@ from typing import Final
 from .scenes.built_in.sphereflake import sphereflake, sphereflake_triangles
 from .scenes.built_in.spheres import spheres, spheres_triangles
 from .scenes.built_in.teapot import teapot, teapot_triangles
+from .scenes.built_in.terrain import terrain, terrain_triangles
 from .scenes.built_in.tetra import tetra, tetra_triangles
 from .scenes.mesh import Mesh
 from .scenes.mesh_files.load_mesh import MESH_EXTENSIONS
@@ -176,6 +177,16 @@ BUILT_INS: Final[dict[str, BuiltIn]] = {
             ),
             spheres_triangles,
             spheres,
+        ),
+        BuiltIn(
+            "terrain",
+            "mountains by their elevations (the fault at Jacksboro, of matplotlib's examples)",
+            (
+                Parameter("step", 16, 1, 64, "from one elevation that is taken to the next"),
+                Parameter("relief", 3.0, 0.0, 20.0, "how often as high as they are"),
+            ),
+            terrain_triangles,
+            terrain,
         ),
         BuiltIn(
             "random",

@@ -16,7 +16,7 @@ from .scene_argument import (
     parse_scene,
 )
 from .scenes.built_in.random_triangles import random_display_list
-from .scenes.camera import Camera
+from .scenes.camera import FRAMED, Camera, View, framing_camera
 from .scenes.lighting import DEFAULT_LIGHTING, Lighting, Shading, check_shading
 from .scenes.mesh import Mesh
 from .scenes.mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
@@ -37,8 +37,22 @@ class SceneDisplayList:
     notes: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class LoadedScene:
+    """A scene whose mesh is there, to be looked at several times; see ``read_scene``."""
+
+    scene: Scene
+    mesh: Mesh | None
+
+
+def read_scene(scene: str | Path) -> LoadedScene:
+    """Read or make a scene's mesh, if it has one.  Raises ``InputError``."""
+    chosen = parse_scene(scene)
+    return LoadedScene(chosen, mesh_of_scene(chosen))
+
+
 def make_display_list(
-    scene: str | Path,
+    scene: str | Path | LoadedScene,
     *,
     width: int | None = None,
     height: int | None = None,
@@ -46,6 +60,7 @@ def make_display_list(
     depth_bits: int | None = None,
     shading: str = "gouraud",
     camera: Camera | None = None,
+    view: View = FRAMED,
     background: Color | None = None,
     lighting: Lighting = DEFAULT_LIGHTING,
     cull: bool = False,
@@ -56,24 +71,24 @@ def make_display_list(
     ``sub_bits``              None: 8, or the list's own
     ``depth_bits``            None: 24, or the list's own
     ``shading``               ``gouraud`` or ``flat``
-    ``camera``                None: frames the scene
+    ``camera``                None: frames the scene, as ``view`` says
     ``background``            red, green, blue; None: dark blue, or the list's own
     ``cull``                  leave out the triangles that face away from the eye
 
-    A saved list is replayed as it is, and a hard case is one: ``shading``,
-    ``lighting`` and ``cull`` do not touch it.  Raises ``InputError`` for a scene,
-    file or number that cannot be used, and for a size or camera that such a list
-    contradicts.
+    A saved list is replayed as it is, and a hard case is one: ``shading`` does not touch it.
+    Raises ``InputError`` for a scene, file or number that cannot be used, and for whatever such a
+    list, or triangles that are made on the screen, cannot be asked for any more.
 
     >>> import cardcage
     >>> teapot = cardcage.make_display_list("teapot:tessellation=2", width=64, height=64)
     >>> teapot.name, teapot.display_list.triangles
     ('teapot:tessellation=2', 240)
     """
-    chosen = parse_scene(scene)
+    chosen = scene.scene if isinstance(scene, LoadedScene) else parse_scene(scene)
     if isinstance(chosen, DisplayListScene | HardCaseScene):
         given = {"width": width, "height": height, "sub_bits": sub_bits, "depth_bits": depth_bits}
-        return _replay(chosen, given, camera, background)
+        _refuse(chosen, "a display list is already projected and lit", camera, view, lighting, cull)
+        return _replay(chosen, given, background)
     picture = PictureFormat(
         DEFAULT_SIZE if width is None else width,
         DEFAULT_SIZE if height is None else height,
@@ -82,10 +97,15 @@ def make_display_list(
     )
     shade = check_shading(shading)
     behind = DEFAULT_BACKGROUND if background is None else background
-    mesh = mesh_of_scene(chosen)
+    mesh = scene.mesh if isinstance(scene, LoadedScene) else mesh_of_scene(chosen)
     if mesh is None:
         assert isinstance(chosen, BuiltInScene)
-        return _random(chosen, picture, behind, shade, camera)
+        _refuse(chosen, "its triangles are made on the screen", camera, view, lighting, cull)
+        return _random(chosen, picture, behind, shade)
+    if camera is None:
+        camera = framing_camera(mesh, view)
+    elif view != FRAMED:
+        raise InputError("view: the camera says where the eye is; leave one of them out")
     display_list = display_list_of_mesh(
         mesh, picture, shading=shade, camera=camera, background=behind, lighting=lighting, cull=cull
     )
@@ -115,16 +135,22 @@ def _notes(mesh: Mesh, display_list: DisplayList) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def _refuse(chosen: Scene, reason: str, camera: Camera | None, view: View, lighting: Lighting,
+            cull: bool) -> None:
+    """``InputError`` for what only a mesh can be asked."""
+    asked = {"camera": camera is not None, "view": view.direction is not None,
+             "zoom": view.zoom != FRAMED.zoom, "light": lighting != DEFAULT_LIGHTING, "cull": cull}
+    for name, given in asked.items():
+        if given:
+            raise InputError(f"{chosen.name}: {name}: {reason}; leave it out, or take a mesh")
+
+
 def _random(
     chosen: BuiltInScene,
     picture: PictureFormat,
     background: Color,
     shading: Shading,
-    camera: Camera | None,
 ) -> SceneDisplayList:
-    if camera is not None:
-        raise InputError(f"{chosen.name}: camera: the triangles are made on the screen; "
-                         "leave the camera out")
     arguments = chosen.arguments
     display_list = random_display_list(
         picture,
@@ -140,7 +166,6 @@ def _random(
 def _replay(
     chosen: DisplayListScene | HardCaseScene,
     given: dict[str, int | None],
-    camera: Camera | None,
     background: Color | None,
 ) -> SceneDisplayList:
     """A display list as it is; ``InputError`` for whatever it contradicts."""
@@ -153,9 +178,6 @@ def _replay(
         if value is not None and value != own:
             raise InputError(f"{source}: {field}: the display list was made for {own}, not "
                              f"{value}; leave it out, or make the list again from its scene")
-    if camera is not None:
-        raise InputError(f"{source}: camera: a display list is already projected; leave the "
-                         "camera out, or make the list again from its scene")
     if background is not None and background != display_list.background:
         raise InputError(f"{source}: background: the display list has {display_list.background}, "
                          f"not {background}; leave it out, or make the list again")

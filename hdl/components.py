@@ -4,26 +4,35 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from amaranth.lib import wiring
+from amaranth.lib import data, wiring
 
 from ..golden.specification.card_order import (
     CARD_MODULES,
+    DIRECT_MERGE,
     FRAME_UNIT,
     MERGE_CARDS,
     SNOOP_MERGE,
 )
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
-from ..golden.specification.queues import depth_lanes
+from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
 from .arithmetic.pipelined_multiplier import PipelinedMultiplier
 from .backplane.connectors import memory_bus_bits
+from .backplane.fragment_lines import unit_fragment_layout
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
 from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
-from .machine import BOARDS
+from .direct.crossbar import Crossbar
+from .direct.direct_element import DirectElement
+from .direct.element_control import DirectElementControl
+from .direct.fragment_queue import FragmentQueue
+from .direct.round_robin import RoundRobin
+from .direct.unit_counters import UnitCounters
+from .direct.unit_feed import UnitFeed
+from .machine import BOARDS, boards_of
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
 from .mapping.unit_pixel import UnitPixel
@@ -67,31 +76,58 @@ def _board(name: str, configuration: MachineConfiguration) -> wiring.Component:
     as in one that sends to it."""
     for letter in (*MERGE_CARDS, FRAME_UNIT):
         if name == CARD_MODULES[letter]:
-            configuration = _ended_by(SNOOP_MERGE if letter == FRAME_UNIT else letter,
-                                      configuration)
-    return BOARDS[name](configuration=configuration)
+            configuration = _merged_by(SNOOP_MERGE if letter == FRAME_UNIT else letter,
+                                       configuration)
+    return (BOARDS | boards_of(configuration))[name](configuration=configuration)
 
 
-def _ended_by(letter: str, configuration: MachineConfiguration) -> MachineConfiguration:
-    """The configuration with nodes that are ended by that card, of which there may be two."""
+def _merged_by(letter: str, configuration: MachineConfiguration) -> MachineConfiguration:
+    """The configuration with nodes that are merged by that card, of which there may be two."""
     if letter == configuration.merge:
         return configuration
-    cards = "".join(cards + letter for cards in configuration.node_cards)
+    units = "M" * configuration.units
+    if letter == DIRECT_MERGE:
+        return replace(configuration, maximum_nodes=2, cards=f"PPD{units}", block=1, skew=False)
+    nodes = [f"P{units}"] if configuration.merges_directly else configuration.node_cards
+    cards = "".join(cards + letter for cards in nodes)
     if letter == SNOOP_MERGE:
         return replace(configuration, maximum_nodes=2, cards=cards + FRAME_UNIT,
                        tag_bits=max(SNOOP_TAG_BITS, configuration.tag_bits))
     return replace(configuration, maximum_nodes=2, cards=cards)
 
 
+def _direct(make: Callable[[MachineConfiguration], wiring.Component],
+            configuration: MachineConfiguration) -> wiring.Component:
+    """What only cages that merge directly have."""
+    return make(_merged_by(DIRECT_MERGE, configuration))
+
+
+def _fragment(configuration: MachineConfiguration) -> data.StructLayout:
+    return unit_fragment_layout(address_bits=configuration.address_bits,
+                                depth_bits=configuration.rank_bits)
+
+
+def _depth_of_queues(configuration: MachineConfiguration) -> int:
+    """Fragments that can wait in one."""
+    return (FRAGMENTS_OF_ELEMENT if configuration.queue == "element" else configuration.queue)
+
+
 #: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     **{name: partial(_board, name) for name in BOARDS},
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
+    "crossbar": partial(_direct, lambda c: Crossbar(
+        elements=c.maximum_nodes, units=c.maximum_units, queue=c.queue, **memory_bus_bits(c))),
     "depth_read_back": lambda c: DepthReadBack(**memory_bus_bits(c)),
+    "direct_element": partial(_direct, lambda c: DirectElement(configuration=c)),
+    "direct_element_control": partial(_direct, lambda c: DirectElementControl(
+        id_bits=c.id_bits, node_bits=c.node_bits)),
     "divider": lambda c: Divider(**plane_division(c, **_depth(c))),
     "drawn_map": lambda c: DrawnMap(words=c.words),
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
+    "fragment_queue": partial(_direct, lambda c: FragmentQueue(
+        depth=_depth_of_queues(c), shape=_fragment(c))),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
     "frame_tags": lambda c: FrameTags(tag_bits=c.tag_bits),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
@@ -116,6 +152,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
         id_bits=c.id_bits, depth_bits=c.rank_bits, order_bits=c.order_bits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
+    "round_robin": partial(_direct, lambda c: RoundRobin(requesters=c.maximum_nodes)),
     "sampling_grid": lambda c: SamplingGrid(configuration=c),
     "scan_address": lambda c: ScanAddress(configuration=c),
     "span_clip": lambda c: SpanClip(configuration=c),
@@ -128,6 +165,9 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "two_port_depth_test": lambda c: TwoPortDepthTest(**memory_bus_bits(c)),
     "two_port_memory": lambda c: TwoPortMemory(words=c.words, depth_bits=c.rank_bits,
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
+    "unit_counters": partial(_direct, lambda c: UnitCounters(units=c.maximum_units)),
+    "unit_feed": partial(_direct, lambda c: UnitFeed(elements=c.maximum_nodes,
+                                                     shape=_fragment(c))),
     "unit_pixel": lambda c: UnitPixel(configuration=c),
     "vertex_sort": lambda c: VertexSort(configuration=c),
 }

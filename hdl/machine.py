@@ -15,6 +15,9 @@ from ..golden.specification.card_order import (
 from ..golden.specification.configuration import MachineConfiguration
 from .backplane.words import response_layout
 from .controller.central_broadcast_controller import CentralBroadcastController
+from .direct.direct_element import DirectElement
+from .direct.direct_lines import connect_direct
+from .direct.direct_merge import DirectMerge
 from .lines_to_all import connect_broadcast, connect_pictures, connect_scan
 from .memory_unit.memory_unit import MemoryUnit
 from .nodes.chain_merge import ChainMerge
@@ -40,6 +43,7 @@ BOARDS: dict[str, type[wiring.Component]] = {
     "chain_merge": ChainMerge,
     "tree_merge": TreeMerge,
     "snoop_merge": SnoopMerge,
+    "direct_merge": DirectMerge,
     "frame_unit": FrameUnit,
 }
 
@@ -47,7 +51,10 @@ BOARDS: dict[str, type[wiring.Component]] = {
 def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Component]]:
     """The kinds of boards that a machine has."""
     others = {CARD_MODULES[letter] for letter in MERGING_CARDS if letter not in configuration.cards}
-    return {name: board for name, board in BOARDS.items() if name not in others}
+    boards = {name: board for name, board in BOARDS.items() if name not in others}
+    if configuration.merges_directly:
+        boards["processing_element"] = DirectElement
+    return boards
 
 
 class Machine(wiring.Component):
@@ -88,13 +95,13 @@ class Machine(wiring.Component):
         })
 
     def make_board(self, name: str) -> wiring.Component:
-        """A new board of the kind ``name``, a key of ``BOARDS``; called once for each that the
+        """A new board of the kind ``name``, a key of ``boards_of``; called once for each that the
         machine has, the controller first, the scan generator next, then slot by slot.
 
         A subclass overrides it to put other boards in the same places.  They must have the
-        signature that ``BOARDS[name]`` has with this machine's configuration.
+        signature that the board of that name has with this machine's configuration.
         """
-        return BOARDS[name](configuration=self.configuration)
+        return boards_of(self.configuration)[name](configuration=self.configuration)
 
     def _cards_of(self, letter):
         return [card for card, place in zip(self.cards, self.configuration.cards, strict=True)
@@ -118,7 +125,7 @@ class Machine(wiring.Component):
 
     @property
     def nodes(self) -> list[Node]:
-        """The cards of each node; of a cage of nodes."""
+        """The cards of each node that a merge card ends."""
         found, elements, units = [], [], []
         for card, letter in zip(self.cards, self.configuration.cards, strict=True):
             if letter == self.configuration.merge:
@@ -131,7 +138,9 @@ class Machine(wiring.Component):
     @property
     def storages(self):
         """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
-        boards = [*self.memory_units, *self.frame_units, *self.merge_cards]
+        lists = (self.processing_elements if self.configuration.merges_directly
+                 else self.merge_cards)
+        boards = [*self.memory_units, *self.frame_units, *lists]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):
@@ -152,6 +161,9 @@ class Machine(wiring.Component):
             left = card
         if self.configuration.merge is None:
             self._connect_lines_to_all(m, total=left.right.id)
+        elif self.configuration.merges_directly:
+            connect_direct(m, self.configuration, controller, generator, self.processing_elements,
+                           self.merge_cards[0], self.memory_units)
         else:
             connect_nodes(m, self.configuration, controller, generator, self.nodes)
             if self.configuration.snoops:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _H
     from .testbenches.frames.responses import MachineError
     from .testbenches.frames.simulation import simulate_frame
     from .testbenches.render import render
+    from .testbenches.render_frames import render_frames
 
     __version__: str
 
@@ -45,6 +46,7 @@ __all__ = [
     "make_display_list",
     "plan",
     "render",
+    "render_frames",
     "simulate_frame",
 ]
 
@@ -61,6 +63,7 @@ _HOMES = {
     "make_display_list": "golden.scene_display_list",
     "plan": "golden.planning.machine_plan",
     "render": "testbenches.render",
+    "render_frames": "testbenches.render_frames",
     "simulate_frame": "testbenches.frames.simulation",
 }
 

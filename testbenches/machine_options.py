@@ -10,7 +10,9 @@ from ..golden.organisations.organisation_of import organisation_of
 from ..golden.planning.machine_plan import plan
 from ..golden.planning.presets import PRESETS
 from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
-from ..golden.scene_display_list import SceneDisplayList, make_display_list
+from ..golden.scene_display_list import LoadedScene, SceneDisplayList, make_display_list
+from ..golden.scenes.camera import View
+from ..golden.scenes.lighting import Lighting
 from ..golden.specification.card_order import merge_card, parse_cards
 from ..golden.specification.configuration import (
     MAXIMUM_SETUP_INTERVAL,
@@ -59,6 +61,14 @@ class MachineOptions:
                           or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
     ``list_words``        nodes have list memories of so many triangles
+
+    How a mesh is looked at; a display list can be asked for none of it:
+
+    ``view``              azimuth and elevation of the eye in degrees
+    ``zoom``              how many times larger than framed
+    ``background``        red, green, blue
+    ``cull``              leave out triangles that face away from the eye
+    ``light``             towards the light: right, up, towards the eye
     """
 
     preset: str | None = None
@@ -77,6 +87,11 @@ class MachineOptions:
     queue: Queue | None = None
     retain: bool | None = None
     list_words: int | None = None
+    view: tuple[float, float] | None = None
+    zoom: float | None = None
+    background: tuple[int, int, int] | None = None
+    cull: bool | None = None
+    light: tuple[float, float, float] | None = None
 
     def machine(self) -> dict[str, Any]:
         """Fields of ``MachineConfiguration`` that are settled; fraction bits None are exact ones.
@@ -112,6 +127,15 @@ class MachineOptions:
         return settled | {"max_error": self.max_error or 0,
                           "retain": bool(self.retain) and self.list_words is None}
 
+    def looking(self) -> dict[str, Any]:
+        """What is asked of ``make_display_list`` of how a mesh is looked at.  Raises
+        ``InputError``."""
+        asked: dict[str, Any] = {"background": self.background, "cull": bool(self.cull),
+                                 "view": View(self.view, 1.0 if self.zoom is None else self.zoom)}
+        if self.light is not None:
+            asked["lighting"] = Lighting(direction=self.light)
+        return asked
+
 
 #: What is asked for by the name of a field of the configuration, and means it.
 _FIELDS = [field.name for field in fields(MachineOptions)
@@ -119,14 +143,18 @@ _FIELDS = [field.name for field in fields(MachineOptions)
            and field.name not in ("shading", "setup")]
 
 
-def load_scene(scene: str | Path, options: MachineOptions) -> SceneDisplayList:
-    """The display list at the size that was asked for.  Raises ``InputError``."""
+def load_scene(scene: str | Path | LoadedScene, options: MachineOptions,
+               view: View | None = None) -> SceneDisplayList:
+    """The display list at the size that was asked for, seen as asked, or as ``view`` says.  Raises
+    ``InputError``."""
     settled = options.machine()
     width, height = settled.get("width"), settled.get("height")
-    if isinstance(parse_scene(scene), DisplayListScene | HardCaseScene) and options.size is None:
+    chosen = scene.scene if isinstance(scene, LoadedScene) else parse_scene(scene)
+    if isinstance(chosen, DisplayListScene | HardCaseScene) and options.size is None:
         width = height = None  # a display list has its own size, whatever the preset's
     return make_display_list(scene, width=width, height=height,
-                             shading="flat" if options.shading == "flat" else "gouraud")
+                             shading="flat" if options.shading == "flat" else "gouraud",
+                             **options.looking() | ({} if view is None else {"view": view}))
 
 
 def machine_for_scene(scene: str | Path, options: MachineOptions
@@ -155,6 +183,11 @@ def option_words(options: MachineOptions) -> list[str]:
     asked = {field.name: getattr(options, field.name) for field in fields(MachineOptions)}
     if asked["size"] is not None:
         asked["size"] = "x".join(map(str, asked["size"]))
+    for name in ("view", "light"):
+        if asked[name] is not None:
+            asked[name] = ",".join(f"{number:.17g}" for number in asked[name])
+    if asked["background"] is not None:
+        asked["background"] = f"#{bytes(asked['background']).hex()}"
     if asked["shading"] == "auto":
         asked["shading"] = None
     return [word for name, value in asked.items() if value is not None and value is not False

@@ -20,10 +20,11 @@ WINGS = {
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all", "controller",
-        "video", "nodes", "snooping", "machine", "components"),
+        "video", "nodes", "snooping", "direct", "machine", "components"),
     "testbenches": (
-        "support", "machine_options", "export", "engines", "frames", "reports", "render",
-        "comparison", "speed", "fpga", "precision", "cocotb_bench", "command_line", "studies"),
+        "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
+        "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",
+        "cocotb_bench", "command_line", "studies"),
     "package": ("__main__",),
 }
 ORDER = list(WINGS)

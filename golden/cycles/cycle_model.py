@@ -14,7 +14,9 @@ ahead together; only of its last one is it asked whether there was a place.
 
 In a cage of nodes the elements of a node only get its own triangles.  The host sends them all
 through one broadcast, which waits only for the queues of the node that is to get the next one;
-or each node has its share in a list, and all send theirs at the same time.
+or each node has its share in a list, and all send theirs at the same time.  Elements without
+pixels of their own are followed clock by clock (``direct``): they wait for memory units, and so for
+one another.
 
 Where units have one port each span is followed by itself, and its clocks are a model
 too: what reads, writes and the scan's slots come to on average.  The model does not know
@@ -24,7 +26,6 @@ it may be five percent off.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,7 @@ from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from .broadcast import ControllersBroadcast, ListBroadcasts, NodeQueues, SetUp, SetupTiming
+from .direct.direct_work import DirectWork
 from .element_latencies import NEVER, PIPELINE, Pipeline
 from .node_work import NodeWork
 
@@ -54,7 +56,8 @@ class CyclePrediction:
     ``element_bound``     float64 (elements,): clocks in which each processing element alone, all
                           triangles at hand, finds its rows, and in which it has a fragment each;
                           the greater
-    ``port_bound``        clocks of the busiest unit's one port; 0 with two
+    ``port_bound``        clocks of the busiest unit's one port; 0 with two, but where elements
+                          share units what the busiest one takes
     """
 
     finished: Float64
@@ -95,9 +98,12 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     machine.  ``retained``: the nodes draw it from their lists.  Precision does not matter to the
     clocks.
     """
+    if configuration.merges_directly:
+        return _predict_direct(configuration, display_list, pipeline, after, setup, retained)
     works = [NodeWork(configuration, display_list, node, pipeline, after)
              for node in range(configuration.nodes)]
-    sent, nodes = _sending_order(configuration, display_list, works, retained)
+    sent, nodes, _ = _sending_order(
+        configuration, display_list, np.concatenate([work.primitive for work in works]), retained)
     broadcast = (ListBroadcasts() if retained else
                  ControllersBroadcast(None if setup is None else SetUp(setup, sent)))
     queues = [NodeQueues(work.elements, configuration.fifo_depth, pipeline) for work in works]
@@ -112,21 +118,42 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         done = max(done, queue.finished)
         finished.append(done)
     kept = [len(work.primitive) for work in works]
-    setup_bound = (0 if retained or setup is None else
-                   max(setup.interval * sum(kept), display_list.triangles))
     return CyclePrediction(
-        np.array(finished), float(setup_bound), float(max(kept) if retained else sum(kept)),
+        np.array(finished), _setup_bound(display_list, setup, sum(kept), retained),
+        float(max(kept) if retained else sum(kept)),
         np.concatenate([work.bound for work in works]), max(work.port_bound for work in works))
 
 
+def _predict_direct(configuration: MachineConfiguration, display_list: DisplayList,
+                    pipeline: Pipeline, after: DisplayList | None, setup: SetupTiming | None,
+                    retained: bool) -> CyclePrediction:
+    """Where elements have no pixels of their own."""
+    work = DirectWork(configuration, display_list, pipeline, after)
+    sent, nodes, order = _sending_order(configuration, display_list, work.primitive, retained)
+    drawn = work.drawn(nodes, None if setup is None else SetUp(setup, sent), retained)
+    triangles = len(sent)
+    broadcast = np.bincount(nodes, minlength=1).max() if retained else triangles
+    return CyclePrediction(
+        np.maximum.accumulate(drawn[order]),
+        _setup_bound(display_list, setup, triangles, retained), float(broadcast), work.bound,
+        work.port_bound)
+
+
+def _setup_bound(display_list: DisplayList, setup: SetupTiming | None, kept: int,
+                 retained: bool) -> float:
+    if retained or setup is None:
+        return 0.0
+    return float(max(setup.interval * kept, display_list.triangles))
+
+
 def _sending_order(configuration: MachineConfiguration, display_list: DisplayList,
-                   works: Sequence[NodeWork], retained: bool) -> tuple[Int64, Int64]:
-    """Of the triangles that may cover a pixel, one after another as the host sends them, the place
-    of each among all, and its node.
+                   primitive: Int64, retained: bool) -> tuple[Int64, Int64, Int64]:
+    """Of the triangles ``primitive``, which may cover a pixel, one after another as the host sends
+    them, the place of each among all, its node, and which of them it is.
 
     Lists that are retained are followed side by side: triangle by triangle of the display list.
     """
     shares = organisation_of(configuration).shares(display_list.triangles)
     place = np.arange(shares.triangles) if retained else shares.host_place
-    sent = np.sort(np.concatenate([place[work.primitive] for work in works]))
-    return sent, shares.node[sent if retained else shares.host_order[sent]]
+    order = np.argsort(place[primitive])
+    return place[primitive][order], shares.node[primitive][order], order

@@ -5,22 +5,28 @@ the sender to the receiver, and as what goes before the first pixel and after th
 
     step = STEP_CLOCKS + clocks of the longest send + nodes on the way · HOP_CLOCKS
 
-A pixel takes a clock.  Where units have one port it is read and, if what comes is nearer, written,
-at a port that the scan has now and then; pixels come from two units in turn, so that two ports
-share them.  How many each of the two units sends is not looked at, which makes this up to a tenth
-wrong.
+With two ports a pixel takes a clock.  Where units have one port it is read and, if what comes is
+nearer, written, at ports that in node 0 the scan has now and then (``received_pixels``).
 
-A chain merges while it is scanned, which takes no clock of a frame.
+A chain merges while it is scanned, which takes no clock of a frame; nodes on a bus have clocks of
+their own (``snoop_clocks``).
 """
 
 from __future__ import annotations
 
-from ..merging.cage import merge_cage
-from ..merging.traffic import Send, Traffic
+from collections.abc import Iterable
+from itertools import groupby
+
+import numpy as np
+
+from ..merging.cage import cage_pictures
+from ..merging.snoop import merge_snoop
+from ..merging.tree import TreeSend, tree_sends
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from .one_port_lanes import scan_share
+from .received_pixels import received_clocks
+from .snoop_clocks import snoop_clocks
 
 #: From the end of drawing to the first step.
 MERGE_CLOCKS = 1
@@ -33,30 +39,46 @@ STEP_CLOCKS = 19
 #: From a node to the next one on the way to the receiver.
 HOP_CLOCKS = 1
 
+#: Places of a scan, equally far apart, at which a merge is tried where nobody knows when it begins.
+PHASES = 4
 
-def predict_merge(configuration: MachineConfiguration, display_list: DisplayList) -> int:
-    """Clocks that merging takes after drawing; 0 where none is left to be done."""
+
+def predict_merge(configuration: MachineConfiguration, display_list: DisplayList,
+                  begin: float | None = None) -> int:
+    """Clocks that merging takes after drawing; 0 where none is left to be done.  ``begin`` as in
+    ``merge_clocks``."""
     if not organisation_of(configuration).merges_after_drawing:
         return 0
-    _, traffic = merge_cage(configuration, display_list)
-    return sum(merge_clocks(configuration, traffic))
+    pictures = cage_pictures(configuration, display_list)
+    if configuration.snoops:
+        return sum(snoop_clocks(merge_snoop(pictures)[1]))
+    return sum(merge_clocks(configuration, tree_sends(pictures), begin))
 
 
-def merge_clocks(configuration: MachineConfiguration, traffic: Traffic) -> list[int]:
-    """The clocks of each step of a tree's ``traffic``, the first one's from the end of drawing
-    on."""
-    longest = [0.0] * (traffic.nodes - 1).bit_length()
-    for send in traffic.sends:
-        longest[send.step] = max(longest[send.step], _send_clocks(configuration, send))
-    return [STEP_CLOCKS + round(clocks) + (HOP_CLOCKS << step) + (0 if step else MERGE_CLOCKS)
-            for step, clocks in enumerate(longest)]
+def merge_clocks(configuration: MachineConfiguration, sends: Iterable[TreeSend],
+                 begin: float | None = None) -> list[int]:
+    """The clocks of each step of a tree's ``sends``, which come step by step; the first one's from
+    the end of drawing on.
+
+    Drawing ended ``begin`` clocks after a scan began to show its first line; None where nobody
+    knows: then the steps have the mean of ``PHASES``.  With two ports it does not matter.
+    """
+    steps: list[int] = []
+    for step, together in groupby(sends, lambda send: send.step):
+        overhead = STEP_CLOCKS + (HOP_CLOCKS << step) + (0 if step else MERGE_CLOCKS)
+        # Nearly all of it is before the first pixel comes.
+        comes = None if begin is None else begin + sum(steps) + overhead
+        longest = max(_send_clocks(configuration, send, comes) for send in together)
+        steps.append(overhead + round(longest))
+    return steps
 
 
-def _send_clocks(configuration: MachineConfiguration, send: Send) -> float:
-    if configuration.memory_ports == 2:
-        return send.pixels
-    assert send.receiver is not None, "only of a tree"
-    # Pixels come from two units in turn, and are written to two while those of both have any.
-    ports = min(2, configuration.units)
-    clocks = max(send.pixels, (send.pixels + send.kept) / ports)
-    return clocks / (1 - scan_share(configuration, send.receiver))
+def _send_clocks(configuration: MachineConfiguration, send: TreeSend, begin: float | None) -> float:
+    if configuration.memory_ports == 2 or not send.sent.any():
+        return float(np.count_nonzero(send.sent))
+    if begin is not None:
+        return received_clocks(configuration, send, begin)
+    scanned = organisation_of(configuration).is_scanned(send.receiver)
+    begins = np.arange(PHASES if scanned else 1) * (configuration.cycles_per_scan / PHASES)
+    return float(np.mean([received_clocks(configuration, send, place)
+                          for place in begins.tolist()]))

@@ -63,6 +63,15 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     """float64 (rows, elements, 2): the share of each lane's time that the scan takes while it
     shows that row of the picture; blanking of both kinds is spread over all rows.  The rows
     repeat.  Nodes that the scan does not read lose nothing."""
+    return _scan_shares(configuration, _shown(configuration))
+
+
+def shown_scan_shares(configuration: MachineConfiguration) -> Float64:
+    """As ``scan_shares``, of the time in which pixels are shown: blanking has none of it."""
+    return _scan_shares(configuration, 1.0)
+
+
+def _scan_shares(configuration: MachineConfiguration, shown: float) -> Float64:
     organisation = organisation_of(configuration)
     elements = len(organisation.domains)
     unit, group = organisation.scan_tile, organisation.scan_group
@@ -75,7 +84,7 @@ def scan_shares(configuration: MachineConfiguration) -> Float64:
     for node, owner in enumerate(organisation.owners):
         if organisation.is_scanned(node):
             read[y, x // group, owner[unit], lane] = 1
-    return np.asarray(read[:, :, :-1].mean(axis=1) * (_shown(configuration) / clocks))
+    return np.asarray(read[:, :, :-1].mean(axis=1) * (shown / clocks))
 
 
 class ElementLanes:

@@ -25,19 +25,27 @@ def sent_pixel_bits(configuration: MachineConfiguration) -> int:
     return bits
 
 
+def cage_pictures(configuration: MachineConfiguration,
+                  display_list: DisplayList) -> list[NodePicture]:
+    """What each node of a cage draws of a display list, at the cage's resolution.  Nodes draw
+    exactly."""
+    organisation = organisation_of(configuration)
+    return node_pictures(
+        display_list, organisation.shares(display_list.triangles),
+        order_bits=configuration.round_bits, shading=configuration.shading,
+        **organisation.resolution.shifts)
+
+
 def merge_cage(configuration: MachineConfiguration,
                display_list: DisplayList) -> tuple[NodePicture, Traffic]:
     """The merged picture, at the cage's resolution, and what is sent for it.
 
-    Nodes draw exactly.  A chain sends, in each scan, every pixel of the video output; a tree and a
+    A chain sends, in each scan, every pixel of the video output; a tree and a
     bus what was drawn, and elements that have no pixels every fragment, each with the place where
     it belongs.
     """
     organisation = organisation_of(configuration)
-    pictures = node_pictures(
-        display_list, organisation.shares(display_list.triangles),
-        order_bits=configuration.round_bits, shading=configuration.shading,
-        **organisation.resolution.shifts)
+    pictures = cage_pictures(configuration, display_list)
     traffic: Traffic
     if configuration.merges_directly:
         picture = merge_direct(

@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 
 class Send(NamedTuple):
-    """``pixels`` pixels from one node to another, in one step of a merge; ``kept`` of them the
-    receiver stores, counted for a tree.  On a bus there is no one receiver: all hear them, and the
-    frame units right of the last node store them."""
+    """``pixels`` pixels from one node to another, in one step of a merge.  On a bus there is no one
+    receiver: all hear them, and the frame units right of the last node store them."""
 
     step: int
     sender: int
     receiver: int | None
     pixels: int
-    kept: int = 0
 
 
 @dataclass(frozen=True)
@@ -68,7 +66,7 @@ class Traffic:
         backplane."""
         bus = any(send.receiver is None for send in self.sends)
         passed = np.zeros(self.nodes - 1 + bus, np.int64)
-        for _, sender, receiver, pixels, _ in self.sends:
+        for _, sender, receiver, pixels in self.sends:
             if receiver is None:
                 passed += pixels
             else:

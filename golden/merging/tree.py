@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .node_picture import NodePicture, higher_is_nearer, nearer
 from .traffic import Send, Traffic
@@ -22,14 +24,33 @@ def tree_pairs(nodes: int) -> Iterator[tuple[int, int, int]]:
             yield step, receiver + (1 << step), receiver
 
 
+class TreeSend(NamedTuple):
+    """What one node sends to another in a step, pixel by pixel.
+
+    ``sent``    bool (height, width): what the sender, and those merged into it, have drawn
+    ``stored``  bool (height, width): what of it the receiver stores
+    """
+
+    step: int
+    sender: int
+    receiver: int
+    sent: NDArray[np.bool_]
+    stored: NDArray[np.bool_]
+
+
+def tree_sends(kept: list[NodePicture]) -> Iterator[TreeSend]:
+    """All sends, step by step; ``kept``, the pictures of the nodes, are merged on the way, in the
+    end all into the first one."""
+    for step, sender, receiver in tree_pairs(len(kept)):
+        lower, higher = kept[receiver], kept[sender]
+        yield TreeSend(step, sender, receiver, higher.drawn, higher_is_nearer(lower, higher))
+        kept[receiver] = nearer(lower, higher)
+
+
 def merge_tree(pictures: Sequence[NodePicture]) -> tuple[NodePicture, Traffic]:
     """The merged picture, which node 0 ends up with, and the sends: what the sender, and those that
     were merged into it, have drawn, and nothing else."""
     kept = list(pictures)
-    sends = []
-    for step, sender, receiver in tree_pairs(len(pictures)):
-        sends.append(Send(
-            step, sender, receiver, int(np.count_nonzero(kept[sender].drawn)),
-            int(np.count_nonzero(higher_is_nearer(kept[receiver], kept[sender])))))
-        kept[receiver] = nearer(kept[receiver], kept[sender])
+    sends = [Send(step, sender, receiver, int(np.count_nonzero(sent)))
+             for step, sender, receiver, sent, _ in tree_sends(kept)]
     return kept[0], Traffic(len(pictures), sends)

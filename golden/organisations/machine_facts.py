@@ -15,6 +15,7 @@ FOLLOWING: dict[str, Callable[[MachineConfiguration, Organisation], Any]] = {
     "organisation": lambda configuration, organisation: organisation.name,
     "nodes": lambda configuration, organisation: organisation.nodes,
     "memory_units": lambda configuration, organisation: organisation.memory_units,
+    "frame_units": lambda configuration, organisation: configuration.frame_units,
     "processing_elements": lambda configuration, organisation: configuration.processing_elements,
     "picture_width": lambda configuration, organisation: organisation.resolution.width,
     "picture_height": lambda configuration, organisation: organisation.resolution.height,

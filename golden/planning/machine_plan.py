@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +19,7 @@ from ..specification.fixed_point import (
 )
 from .node_plan import check_given, fields_of_nodes, lines_of_nodes, needs_of_nodes
 from .plan_line import PlanLine
-from .scene_needs import SceneNeeds, fewest_sub_bits, scene_needs, with_sub_bits
+from .scene_needs import SceneNeeds, combined, fewest_sub_bits, scene_needs, with_sub_bits
 
 #: What a processing element holds in waiting where there is enough to hold.
 FIFO_DEPTH = MachineConfiguration.fifo_depth
@@ -35,9 +36,11 @@ class Plan:
     lines: tuple[PlanLine, ...]
 
 
-def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
+def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_error: int = 0,
          fraction_bits: int | None = None, retain: bool = False, **rest: Any) -> Plan:
     """The machine that draws ``display_list`` with the least hardware, on these cards.
+
+    ``display_list``   or several, of one format, that one machine draws one after another
 
     ``max_error``      LSB by which a depth may be off; 0 is exact
     ``fraction_bits``  None: the fewest for ``max_error``
@@ -62,23 +65,26 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
     check_max_error(max_error)
     if fraction_bits is not None and max_error:
         raise InputError("max error: the fraction bits are given as well; leave one of them out")
-    picture = {name: getattr(display_list, name) for name in ("width", "height", "depth_bits")}
+    lists = [display_list] if isinstance(display_list, DisplayList) else display_list
+    picture = {name: getattr(lists[0], name) for name in ("width", "height", "depth_bits")}
     for name, given in picture.items():
         if rest.pop(name, given) != given:
             raise InputError(f"{name}: the display list has {given}; a plan is for the list's own")
-    own_sub_bits = display_list.sub_bits
-    display_list = with_sub_bits(display_list, fewest_sub_bits(display_list))
+    own_sub_bits = max(each.sub_bits for each in lists)
+    sub_bits = max(map(fewest_sub_bits, lists))
     fixed = {"cards": cards, **picture}
-    rest = {"shading": "flat" if display_list.flat else "gouraud"} | rest
-    machine = MachineConfiguration(**fixed, sub_bits=display_list.sub_bits,
-                                   fraction_bits=fraction_bits or 0, **rest)
-    needs = scene_needs(display_list, **organisation_of(machine).resolution.shifts)
+    rest = {"shading": "flat" if all(each.flat for each in lists) else "gouraud"} | rest
+    machine = MachineConfiguration(**fixed, sub_bits=sub_bits, fraction_bits=fraction_bits or 0,
+                                   **rest)
+    shifts = organisation_of(machine).resolution.shifts
+    needs = combined([scene_needs(with_sub_bits(each, sub_bits), **shifts) for each in lists])
     if fraction_bits is None:
         fraction_bits = needs.exact_fraction_bits
         if max_error:
             fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
     machine = replace(machine, fraction_bits=fraction_bits)
-    nodes = needs_of_nodes(machine, display_list, needs.exact_fraction_bits, retain)
+    nodes = needs_of_nodes(machine, [with_sub_bits(each, sub_bits) for each in lists],
+                           needs.exact_fraction_bits, retain)
     asked = {name: value for name, value in rest.items() if name != "shading"}
     planned = replace(machine, **_fewest(needs, machine) | asked
                       | fields_of_nodes(nodes, retain, rest))
@@ -90,7 +96,7 @@ def plan(display_list: DisplayList, *, cards: str, max_error: int = 0,
         fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
                                               max_error))
     lines = _lines(planned, full, needs, max_error)
-    if nodes is not None:
+    if nodes:
         check_given(planned, nodes)
         lines += lines_of_nodes(planned, full, nodes, rest.get("order_bits"))
     return Plan(planned, full, needs, tuple(lines))

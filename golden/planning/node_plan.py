@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from ..organisations.shares import Shares
@@ -13,45 +14,48 @@ from .node_needs import NodeNeeds
 from .plan_line import PlanLine
 
 
-def needs_of_nodes(machine: MachineConfiguration, display_list: DisplayList,
-                   exact_fraction_bits: int, retain: bool) -> NodeNeeds | None:
-    """None where all is one node, in which nothing can be retained."""
+def needs_of_nodes(machine: MachineConfiguration, display_lists: Sequence[DisplayList],
+                   exact_fraction_bits: int, retain: bool) -> list[NodeNeeds]:
+    """Of each list; none where all is one node, in which nothing can be retained."""
     if machine.merge is not None:
-        return NodeNeeds(machine, display_list, exact_fraction_bits)
+        return [NodeNeeds(machine, each, exact_fraction_bits) for each in display_lists]
     if retain:
         raise InputError(f"retain: lists are kept in nodes, and {machine.cards} has no merge card; "
                          "end its nodes with one, as in 2x(PMMC)")
-    return None
+    return []
 
 
-def fields_of_nodes(nodes: NodeNeeds | None, retain: bool, rest: dict[str, Any]) -> dict[str, int]:
+def fields_of_nodes(nodes: Sequence[NodeNeeds], retain: bool, rest: dict[str, Any]
+                    ) -> dict[str, int]:
     """The fields that are planned for nodes, those that are given left out."""
     planned: dict[str, int] = {}
-    if nodes is not None and rest.get("order_bits") is None:
-        planned["order_bits"] = nodes.order_bits
-    if nodes is not None and retain and not rest.get("list_words"):
-        planned["list_words"] = nodes.list_words
+    if nodes and rest.get("order_bits") is None:
+        planned["order_bits"] = max(each.order_bits for each in nodes)
+    if nodes and retain and not rest.get("list_words"):
+        planned["list_words"] = max(each.list_words for each in nodes)
     return planned
 
 
-def check_given(planned: MachineConfiguration, nodes: NodeNeeds) -> None:
+def check_given(planned: MachineConfiguration, nodes: Sequence[NodeNeeds]) -> None:
     """``InputError`` where too little was asked for."""
-    for field, needed, reason, _ in nodes.lacks(planned):
+    for field, needed, reason, _ in (lack for each in nodes for lack in each.lacks(planned)):
         raise InputError(f"{field}: {getattr(planned, field)} asked for, the display list needs "
                          f"{needed} {reason}; leave it out, or take {needed}")
 
 
-def lines_of_nodes(planned: MachineConfiguration, full: MachineConfiguration, nodes: NodeNeeds,
-                   given: int | None) -> list[PlanLine]:
+def lines_of_nodes(planned: MachineConfiguration, full: MachineConfiguration,
+                   nodes: Sequence[NodeNeeds], given: int | None) -> list[PlanLine]:
     """The lines; ``given`` is an order that was asked for."""
-    reason = "asked for" if given is not None else _order_reason(planned, nodes.shares)
+    shares = max((each.shares for each in nodes), key=lambda shares: shares.rounds)
+    reason = "asked for" if given is not None else _order_reason(planned, shares)
     lines = [PlanLine("order bits", str(planned.order_bits), str(full.order_bits), reason,
                       full.round_bits - planned.round_bits)]
     if planned.list_words:
         bits = list_word_bits(planned)
         lines.append(PlanLine(
             "list words", f"{planned.list_words:,}", "-",
-            f"the largest of {planned.nodes} shares has {nodes.list_words:,} triangles that may "
+            f"the largest of {planned.nodes} shares has "
+            f"{max(each.list_words for each in nodes):,} triangles that may "
             f"cover a pixel; {bits} bits each, {planned.list_words * bits:,} in each node"))
     return lines
 

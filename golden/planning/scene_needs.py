@@ -7,6 +7,7 @@ that count, which are those on an edge's own rows and at covered pixels.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any
@@ -115,6 +116,22 @@ class SceneNeeds:
             return max(1, greatest.bit_length())
         error = self.error(machine.fraction_bits)
         return _signed_bits(-error, greatest + error)
+
+
+def combined(each: Sequence[SceneNeeds]) -> SceneNeeds:
+    """The needs of a machine that draws several lists, of one size and with as many sub-pixel bits,
+    one after another."""
+    decisive = max(each, key=lambda needs: needs.exact_fraction_bits)
+
+    def ends(name: str) -> tuple[int, int]:
+        lows, highs = zip(*(getattr(needs, name) for needs in each), strict=True)
+        return min(lows), max(highs)
+
+    greatest = {name: max(getattr(needs, name) for needs in each) for name in (
+        "triangles", "drawn", "edge_height", "edge_rows_height", "greatest_depth",
+        "greatest_channel", "extent", "widest", "tallest")}
+    return replace(decisive, flat=all(needs.flat for needs in each),
+                   coordinates=ends("coordinates"), columns=ends("columns"), **greatest)
 
 
 def scene_needs(display_list: DisplayList, *, x_shift: int = 0, y_shift: int = 0) -> SceneNeeds:

@@ -19,6 +19,9 @@ ELEVATION_DEGREES: Final = 30.0
 
 FIELD_OF_VIEW_DEGREES: Final = 35.0
 
+#: Of the middle of the picture; such that a field of view is one that ``Camera`` takes.
+ZOOM_RANGE: Final = (0.05, 30.0)
+
 #: Room around the bounding sphere, also before the near plane and behind the far one.
 MARGIN: Final = 1.01
 
@@ -116,12 +119,49 @@ class Camera:
         return self.projection_matrix(picture, near, far) @ self.view_matrix()
 
 
-def framing_camera(mesh: Mesh) -> Camera:
-    """The camera that sees all of a mesh: its bounding sphere fills the picture.
+@dataclass(frozen=True)
+class View:
+    """How a mesh is looked at that a camera frames.
 
-    From where the mesh asks to be seen, or else a three-quarter view from above
-    in front; what is up follows the mesh.  A z-up scene is seen from -y with x
-    to the right, a y-up scene from +z with x to the right.
+    ``direction``  azimuth and elevation of the eye in degrees: so far to the right of straight on,
+                   any number, and so far above, -90 … 90; None: as the mesh asks to be seen, or
+                   else a three-quarter view from above
+    ``zoom``       how many times larger than framed the middle of the picture is
+
+    Raises ``InputError`` where a number cannot be used.
+    """
+
+    direction: tuple[float, float] | None = None
+    zoom: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.direction is not None:
+            azimuth, elevation = self.direction
+            if not math.isfinite(azimuth):
+                raise InputError(f"view: azimuth: {azimuth!r} is not a number of degrees")
+            if not -90.0 <= elevation <= 90.0:
+                raise InputError(f"view: elevation: {elevation!r} is not from -90 to 90 degrees")
+        if not ZOOM_RANGE[0] <= self.zoom <= ZOOM_RANGE[1]:
+            raise InputError(f"zoom: {self.zoom!r} is not from {ZOOM_RANGE[0]} to {ZOOM_RANGE[1]}")
+
+    @property
+    def field_of_view(self) -> float:
+        """Degrees, as of ``Camera``."""
+        if self.zoom == 1.0:
+            return FIELD_OF_VIEW_DEGREES
+        half = math.tan(math.radians(FIELD_OF_VIEW_DEGREES) / 2.0) / self.zoom
+        return 2.0 * math.degrees(math.atan(half))
+
+
+FRAMED: Final = View()
+
+
+def framing_camera(mesh: Mesh, view: View = FRAMED) -> Camera:
+    """The camera that sees all of a mesh: its bounding sphere fills the picture, or a zoom's share
+    of it.
+
+    What is up follows the mesh.  A z-up scene is seen from -y with x to the right, a y-up scene
+    from +z with x to the right.
     """
     used = mesh.vertices[np.unique(mesh.faces)]
     low, high = used.min(axis=0), used.max(axis=0)
@@ -132,28 +172,51 @@ def framing_camera(mesh: Mesh) -> Camera:
     # The eye must not coincide with the target by rounding.
     radius = max(radius, 1e-12 * float(np.abs(center).max()), 1e-100) * MARGIN
     distance = radius / math.sin(math.radians(FIELD_OF_VIEW_DEGREES) / 2.0)
-    if mesh.eye_direction is None:
-        direction = _three_quarter(np.array(mesh.up))
+    up: Vector = mesh.up
+    if view.direction is not None:
+        direction, upwards = _seen_from(mesh.up, *view.direction)
+        up = (float(upwards[0]), float(upwards[1]), float(upwards[2]))
+    elif mesh.eye_direction is None:
+        direction, _ = _seen_from(mesh.up, AZIMUTH_DEGREES, ELEVATION_DEGREES)
     else:
         direction = _unit(np.array(mesh.eye_direction))
     eye = center + direction * distance
     return Camera(
         eye=(float(eye[0]), float(eye[1]), float(eye[2])),
         target=(float(center[0]), float(center[1]), float(center[2])),
-        up=mesh.up,
+        up=up,
+        field_of_view=view.field_of_view,
         near=distance - radius,
         far=distance + radius,
     )
 
 
-def _three_quarter(up: NDArray[np.float64]) -> NDArray[np.float64]:
-    up = _unit(up)
-    across = np.array([1.0, 0.0, 0.0]) if abs(up[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    right = _unit(across - up * float(across @ up))
-    front = np.cross(right, up)
-    azimuth, elevation = math.radians(AZIMUTH_DEGREES), math.radians(ELEVATION_DEGREES)
+def seen_direction(mesh: Mesh) -> tuple[float, float]:
+    """Azimuth and elevation in degrees, as in ``View``, from where a mesh asks to be seen."""
+    if mesh.eye_direction is None:
+        return AZIMUTH_DEGREES, ELEVATION_DEGREES
+    right, front, up = (float(axis @ _unit(np.array(mesh.eye_direction)))
+                        for axis in _level_axes(mesh.up))
+    return (math.degrees(math.atan2(right, front)),
+            math.degrees(math.asin(min(1.0, max(-1.0, up)))))
+
+
+def _level_axes(up: Vector) -> NDArray[np.float64]:
+    """Unit vectors right, to the front, and up, of a scene with that direction up."""
+    upwards = _unit(np.array(up))
+    across = np.array([1.0, 0.0, 0.0]) if abs(upwards[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    right = _unit(across - upwards * float(across @ upwards))
+    return np.stack([right, np.cross(right, upwards), upwards])
+
+
+def _seen_from(up: Vector, azimuth_degrees: float, elevation_degrees: float
+               ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Unit vectors towards the eye, and up in the picture, also from straight above."""
+    right, front, upwards = _level_axes(up)
+    azimuth, elevation = math.radians(azimuth_degrees), math.radians(elevation_degrees)
     level = right * math.sin(azimuth) + front * math.cos(azimuth)
-    return np.asarray(level * math.cos(elevation) + up * math.sin(elevation), np.float64)
+    towards = level * math.cos(elevation) + upwards * math.sin(elevation)
+    return towards, upwards * math.cos(elevation) - level * math.sin(elevation)
 
 
 def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:

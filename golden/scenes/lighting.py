@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -25,11 +26,18 @@ class Lighting:
     ``direction``  towards the light, in camera axes: right, up, towards the eye
 
     The default shines over the left shoulder, so that any scene is modelled by
-    it from any side.
+    it from any side.  Raises ``InputError`` where a number cannot be used.
     """
 
     ambient: float = 0.2
     direction: Vector = (-0.45, 0.65, 0.6)
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.ambient <= 1.0:
+            raise InputError(f"ambient: {self.ambient!r} is not from 0 to 1")
+        if not 1e-9 <= math.hypot(*self.direction) <= 1e9:
+            raise InputError(f"light: {self.direction!r} is no direction; take three numbers: "
+                             "right, up, towards the eye")
 
 
 DEFAULT_LIGHTING: Final = Lighting()

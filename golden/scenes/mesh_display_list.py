@@ -48,9 +48,9 @@ def corners_of_mesh(
     lighting: Lighting = DEFAULT_LIGHTING,
 ) -> NDArray[np.float64]:
     """Transform and light the faces that have area, for ``display_list_of_corners``."""
-    view = framing_camera(mesh) if camera is None else camera
-    colors = lit_corners(mesh, view, shading, lighting)
-    homogeneous = transform(view.matrix(picture, mesh.vertices[np.unique(mesh.faces)]),
+    camera = framing_camera(mesh) if camera is None else camera
+    colors = lit_corners(mesh, camera, shading, lighting)
+    homogeneous = transform(camera.matrix(picture, mesh.vertices[np.unique(mesh.faces)]),
                             mesh.vertices)
     corners = np.concatenate([homogeneous[mesh.faces], colors], axis=2)
     return np.asarray(corners[~mesh.degenerate()], np.float64)

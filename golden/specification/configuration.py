@@ -152,7 +152,7 @@ class MachineConfiguration(Cage):
     order_bits: int = field(default=None)  # type: ignore[assignment]
     list_words: int = 0
     maximum_nodes: int = 0
-    queue: Queue = 2
+    queue: Queue = 4
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:

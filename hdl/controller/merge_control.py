@@ -5,7 +5,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification import commands
-from ...golden.specification.commands import Opcode, ResponseKind
+from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
 from .node_control import NodeControl
@@ -13,7 +13,7 @@ from .one_node import OneNode
 from .snoop_control import SnoopControl
 from .tree_steps import TreeSteps
 
-__all__ = ["ChainControl", "TreeControl", "merge_control"]
+__all__ = ["ChainControl", "DirectControl", "TreeControl", "merge_control"]
 
 
 class ChainControl(NodeControl):
@@ -101,12 +101,31 @@ class TreeControl(NodeControl):
         m.d.comb += self.steps.start.eq(1)
 
 
+class DirectControl(NodeControl):
+    """Nodes share all memory units: these are counted on the ID lines, as where all is one node,
+    and no two nodes can differ.  When all is drawn it is merged."""
+
+    def _count(self, m, controller):
+        """What nodes report is known."""
+
+    def all_units(self, controller):
+        return controller.total
+
+    def refused(self, controller):
+        return controller.unsupported_units
+
+    def fault(self, controller):
+        return Fault.UNITS_UNSUPPORTED
+
+
 def merge_control(configuration: MachineConfiguration) -> OneNode:
     """What a machine's controller has."""
     if configuration.scans_rank:
         return ChainControl(configuration=configuration)
     if configuration.sends_drawn:
         return TreeControl(configuration=configuration)
+    if configuration.merges_directly:
+        return DirectControl(configuration=configuration)
     if configuration.snoops:
         return SnoopControl(configuration=configuration)
     return OneNode()

@@ -67,8 +67,9 @@ class LatticeBlock(wiring.Component):
 
     The pixels of an aligned power-of-two block of units form a regular lattice;
     a processing element walks its domain block by block (one, where the shares
-    are equal powers of two).  Interlaced in squares, a share is the only block.
-    Skewed, every other row of a block of one unit is shifted.
+    are equal powers of two).  Interlaced in squares, a share is the only block; diagonally,
+    all units are, and all pixels theirs.  Skewed, every other row of a block of one unit is
+    shifted.
 
     Members
     -------
@@ -94,6 +95,9 @@ class LatticeBlock(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
+        if self.configuration.merges_directly:
+            m.d.comb += self.after.eq(self.end)
+            return m
         shares = range(self.configuration.id_bits)
         if self.configuration.square_bits:
             shares = (self.configuration.share_bits,)

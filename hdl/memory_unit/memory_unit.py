@@ -10,6 +10,7 @@ from ..backplane.id_increment import IdIncrement
 from ..wires import wires
 from .memory_access import part_answer
 from .one_port_memory import OnePortMemory
+from .own_depth_test import OwnDepthTest
 from .scan_part import ScanPart
 from .send_part import SendPart
 from .snoop_part import SnoopPart
@@ -53,6 +54,8 @@ class MemoryUnit(wiring.Component):
         Only where nodes merge in a tree (``SendPart``) or on a bus (``SnoopPart``).
     heard: In(heard_pixel_layout)
         Only where nodes merge on a bus.
+    direct: In(FragmentLines)
+        Only where processing elements keep no pixels (``OwnDepthTest``).
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -64,11 +67,13 @@ class MemoryUnit(wiring.Component):
             tag_bits=configuration.tag_bits, parts=self._parts)
         self._scan = None if configuration.snoops else ScanPart(configuration=configuration)
         #: What the unit does besides in a cage of that kind, if anything.
-        self._besides: SendPart | SnoopPart | None = None
+        self._besides: SendPart | SnoopPart | OwnDepthTest | None = None
         if configuration.sends_drawn:
             self._besides = SendPart(configuration=configuration)
         elif configuration.snoops:
             self._besides = SnoopPart(configuration=configuration)
+        elif configuration.merges_directly:
+            self._besides = OwnDepthTest(configuration=configuration)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),

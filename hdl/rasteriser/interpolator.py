@@ -55,6 +55,8 @@ class Interpolator(wiring.Component):
     fragments: Out(stream of fragment_layout)
     busy: Out(1)
         Holds a pixel.
+    node: In(node_order_bits)
+        The processing element's, only where pixels keep it.
 
     Fuchs & Johnson, after figure 13: the controller computes the increments, the
     processing elements only apply them.
@@ -71,7 +73,13 @@ class Interpolator(wiring.Component):
             "fragments": Out(stream.Signature(
                 fragment_layout(**memory_bus_bits(configuration)))),
             "busy": Out(1),
+            **({"node": In(configuration.node_order_bits)} if self._keeps_node else {}),
         })
+
+    @property
+    def _keeps_node(self):
+        """The node is the lowest part of a pixel's order."""
+        return bool(self.configuration.order_bits and self.configuration.node_order_bits)
 
     def elaborate(self, platform):
         m = Module()
@@ -116,9 +124,12 @@ class Interpolator(wiring.Component):
 
     def _rank(self, m, depth, planes, moves, move):
         """Depth, and below it the order, where pixels keep one."""
-        if not self.configuration.round_bits:
-            return depth
-        return Cat(delayed(m, planes.round, moves, "round", enable=move), depth)
+        order = []
+        if self._keeps_node:
+            order.append(self.node)
+        if self.configuration.round_bits:
+            order.append(delayed(m, planes.round, moves, "round", enable=move))
+        return Cat(*order, depth) if order else depth
 
     def _value(self, m, plane, pixel, move, name):
         """The interpolant at the pixel, four moves later: products, then sums of two numbers."""

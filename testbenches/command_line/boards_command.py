@@ -12,13 +12,14 @@ import click
 from ..fpga.place_and_route import TARGET_MHZ
 from ..speed.cases import SIZE
 from ..support.atomic_output import atomic_file, output_errors
+from ..support.progress import step_bar
 from .command_options import Several, Size
-from .progress import step_bar
 
 #: What can be measured (``fpga.boards``, which loads Amaranth and so is not asked here).
 BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports",
-               "unit-of-chain", "unit-of-tree", "chain-merge", "tree-merge", "setup-fast",
-               "setup-small")
+               "unit-of-chain", "unit-of-tree", "unit-of-snoop", "chain-merge", "tree-merge",
+               "snoop-merge", "frame-unit", "element-of-direct", "unit-of-direct", "direct-merge",
+               "direct-merge-2", "direct-merge-element", "setup-fast", "setup-small")
 
 
 @click.command(name="boards")

@@ -11,6 +11,7 @@ from .command_group import CommandGroup
 from .compare_command import compare_command
 from .engines_command import engines_command
 from .export_command import export_command
+from .figures_command import figures_command
 from .plan_command import plan_command
 from .precision_command import precision_command
 from .render_command import render_command
@@ -41,8 +42,8 @@ def main(context: click.Context) -> None:
 
 
 for command in (bench_command, boards_command, cache_command, check_verilog_command,
-                compare_command, engines_command, export_command, plan_command, precision_command,
-                render_command, scenes_command):
+                compare_command, engines_command, export_command, figures_command, plan_command,
+                precision_command, render_command, scenes_command):
     main.add_command(command)
 
 

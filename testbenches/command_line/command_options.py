@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -54,6 +55,40 @@ class NumberOr(click.ParamType):
             self.fail(f"{value!r} is neither '{self.word}' nor a whole number from {self.low} to "
                       f"{self.high}", param, ctx)
         return int(value)
+
+
+class Numbers(click.ParamType):
+    """Several numbers with commas between them, as many as ``name`` has."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.count = name.count(",") + 1
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[float, ...]:
+        try:
+            numbers = tuple(float(word) for word in value.split(","))
+        except ValueError:
+            numbers = ()
+        if len(numbers) != self.count or not all(map(math.isfinite, numbers)):
+            self.fail(f"{value!r} is not {self.count} numbers, {self.name}", param, ctx)
+        return numbers
+
+
+class Color(click.ParamType):
+    """``#1c2030``, or the name of a colour, as (red, green, blue)."""
+
+    name = "COLOUR"
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[int, ...]:
+        from PIL import ImageColor  # takes a while to load
+
+        try:
+            return ImageColor.getrgb(value)[:3]
+        except ValueError:
+            self.fail(f"{value!r} is no colour; take a name such as navy, or red, green and blue "
+                      "as in #1c2030", param, ctx)
 
 
 FRACTION_BITS = NumberOr("exact", 0, MAX_FRACTION_BITS)
@@ -117,6 +152,21 @@ _FURTHER_OPTIONS = (
                  "of each kind or a pipeline of them.  [default: host]"),
 )
 
+#: How a mesh is looked at.
+_VIEW_OPTIONS = (
+    click.option("--view", type=Numbers("AZIMUTH,ELEVATION"), metavar="AZIMUTH,ELEVATION",
+                 help="Where the eye is, in degrees: to the right of straight on, and above.  "
+                 "[default: 25,30, or as the scene asks to be seen]"),
+    click.option("--zoom", type=float, metavar="N", help="How many times larger the middle of the "
+                 "picture is than framed.  [default: 1]"),
+    click.option("--background", type=Color(), metavar="COLOUR",
+                 help="A name such as navy, or #1c2030.  [default: #1c2030]"),
+    click.option("--cull", is_flag=True, default=None,
+                 help="Leave out triangles that face away from the eye."),
+    click.option("--light", type=Numbers("X,Y,Z"), metavar="X,Y,Z", help="Towards the light: "
+                 "right, up, towards the eye.  [default: -0.45,0.65,0.6]"),
+)
+
 _NODE_OPTIONS = (
     click.option("--packet", type=PACKET, metavar="N|contiguous",
                  help="Where there are merge cards: how many triangles that follow one another go "
@@ -124,7 +174,7 @@ _NODE_OPTIONS = (
     click.option("--queue", type=QUEUE, metavar="N|element",
                  help="Where nodes merge directly (D): how many fragments can wait from each "
                  "processing element to each memory unit, or one queue for each element.  "
-                 "[default: 2]"),
+                 "[default: 4]"),
     click.option("--list-words", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
                  help="Triangles that each list memory holds; gives nodes one, like --retain.  "
                  "[default: what the scene needs]"),
@@ -146,20 +196,26 @@ _RETAIN_OR_NOT_OPTION = click.option(
 def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS, *_FURTHER_OPTIONS,
-                           _RETAIN_OPTION, *_NODE_OPTIONS))
+                           _RETAIN_OPTION, *_NODE_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose several machines: ``cards`` are as many as were
     asked for, all else is for each of them."""
     return _with(command, (_SEVERAL_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS,
-                           *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS))
+                           *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS,
+                           *_VIEW_OPTIONS))
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine, but for its precision."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_FURTHER_OPTIONS, _RETAIN_OPTION,
-                           *_NODE_OPTIONS))
+                           *_NODE_OPTIONS, *_VIEW_OPTIONS))
+
+
+def view_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that say how a mesh is looked at."""
+    return _with(command, _VIEW_OPTIONS)
 
 
 def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]

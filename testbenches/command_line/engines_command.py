@@ -13,7 +13,7 @@ from ...golden.planning.presets import PRESETS
 from ...golden.scene_display_list import make_display_list
 from ...golden.specification.errors import InputError
 from ..engines.verilator_tool import ToolMissingError
-from .progress import busy
+from ..support.progress import busy
 
 
 @click.command(name="engines")

@@ -10,9 +10,9 @@ import click
 
 from ..machine_options import MachineOptions
 from ..render import DEFAULT_SCENE
+from ..support.progress import busy
 from .command_group import warn
 from .command_options import machine_options
-from .progress import busy
 from .tables.plan_table import plan_table, plan_text
 from .tables.scene_plan import plan_facts, plan_scene
 

@@ -18,9 +18,9 @@ from ..precision.scene_precision import (
 )
 from ..render import DEFAULT_SCENE
 from ..support.atomic_output import atomic_folder, output_errors
+from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import machine_options_of_any_precision
-from .progress import step_bar
 
 
 @click.command(name="precision")

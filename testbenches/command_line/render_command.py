@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import click
 
+from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE, RenderOptions, prepare_render
+from ..render_frames import FramesOptions, check_alone, prepare_frames
+from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
+from ..support.progress import busy, progress_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import machine_options
-from .progress import progress_bar
-from .tables.render_summary import render_summary
+from .tables.render_summary import frames_summary, render_summary
 
 #: Some minutes of simulation: say so before.
 PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
@@ -27,6 +31,15 @@ PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
               help="Start with random words in every memory, as after power-on.")
 @click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE.vcd",
               help="Also record every signal.")
+@click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
+              help="Draw N pictures one after another, of a mesh that turns.")
+@click.option("--turn", type=float, metavar="DEGREES",
+              help=f"With --frames: from one picture to the next.  [default: {DEFAULT_TURN}]")
+@click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
+              help="Draw a picture for each line, which has azimuth,elevation or "
+              "azimuth,elevation,zoom; the first line names them.")
+@click.option("--depth", type=click.Choice(["last", "all"]), default="last", show_default=True,
+              help="With --frames or --path: whose depths are read back as well.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
               show_default=True, metavar="DIR", help="Folder of the report.")
 @click.pass_obj
@@ -43,11 +56,19 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
       cardcage render
       cardcage render mesh.stl --size 96x96 --out mesh-report
       cardcage render teapot --cards '4x(PMM)' --size 64x64
+      cardcage render teapot --view 200,45 --zoom 1.5 --background navy
+      cardcage render teapot --frames 8 --turn 45 --out turning
       cardcage render sphereflake:depth=1 --fraction-bits 6
       cardcage render random:n=40,size=12,seed=7 --preset tiny --waveform tiny.vcd
       cardcage render cardcage-out/display_list.npz --cards 'PM PMMM'
     """
-    job = prepare_render(scene, RenderOptions(**options), command_line)
+    asked = FramesOptions(**options)
+    if asked.frames is not None or asked.path is not None:
+        _render_frames(scene, asked, waveform, out, command_line)
+        return
+    check_alone(asked)
+    one = {field.name: getattr(asked, field.name) for field in fields(RenderOptions)}
+    job = prepare_render(scene, RenderOptions(**one), command_line)
     for warning in job.warnings:
         warn(warning)
     expected = job.expected_cycles()
@@ -61,3 +82,19 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
     if not rendering.comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
 
+
+def _render_frames(scene: str, options: FramesOptions, waveform: Path | None, out: Path,
+                   command_line: str) -> None:
+    if waveform is not None:
+        raise InputError("--waveform: is of one picture; leave out --frames and --path")
+    with busy("looking from every side"):
+        job = prepare_frames(scene, options, command_line)
+    for warning in job.warnings:
+        warn(warning)
+    with progress_bar(job.expected_cycles()) as progress:
+        rendering = job.run(out, progress)
+    for warning in rendering.shown.warnings[len(job.warnings):]:
+        warn(warning)
+    click.echo(frames_summary(rendering))
+    if not rendering.equal:
+        click.get_current_context().exit(EXIT_DIFFERENT)

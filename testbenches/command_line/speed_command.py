@@ -13,16 +13,16 @@ import click
 from ...golden.specification.configuration import RANGES
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import ENGINES, make_engine
-from ..machine_options import SETUPS
+from ..machine_options import SETUPS, MachineOptions
 from ..speed.baseline import against, load_baseline
 from ..speed.cases import DEFAULT_CASES, ORDERS, case_names, check_case
 from ..speed.machines import ALL_MACHINES, MachineAxes, bench_machines, varied
 from ..speed.speed_rows import bench, steps
 from ..speed.speed_table import bench_facts, bench_table, bench_text
 from ..support.atomic_output import atomic_file, output_errors
+from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT
-from .command_options import Several
-from .progress import step_bar
+from .command_options import Several, view_options
 
 #: The value of ``--engine`` that asks the cycle model only.
 MODEL = "model"
@@ -51,6 +51,7 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
               help="Of depths: visible draws each triangle before those drawn earlier, random "
               "shuffles them.  [default: visible]")
+@view_options
 @click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
               "option restricts: hours.")
 @click.option("--engine", type=click.Choice([*ENGINES, MODEL]), default="verilator",
@@ -65,7 +66,8 @@ def _numbers(least: int, most: int) -> Several:
 @click.pass_obj
 def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[Any, ...] | None,
                   everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
-                  plot: Path | None, **axes: Any) -> None:
+                  plot: Path | None, view: Any, zoom: float | None, background: Any,
+                  cull: bool | None, light: Any, **axes: Any) -> None:
     """Measure clocks per triangle and fragment on chosen machines, beside the peers' figures.
 
     Every machine is exact for any triangle on its 512x512 screen, and scans its picture out
@@ -77,6 +79,7 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
     Examples:
       cardcage bench
       cardcage bench one_pixel random_bbox16 --elements 1,4,16 --units 1,2
+      cardcage bench mesh --view 90,10 --cull --elements 16
       cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
       cardcage bench random_bbox16 mesh --elements 16 --block 1,2,4,8,16,32 --engine model
       cardcage bench random_bbox16 sliver_vert_2x480 --ports 1 --no-skew
@@ -96,13 +99,14 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
     names = [check_case(case) for case in cases] or list(
         case_names() if everything else DEFAULT_CASES)
     orders = orders or (ORDERS if everything else ORDERS[:1])
+    looking = MachineOptions(view=view, zoom=zoom, background=background, cull=cull, light=light)
     before = None if baseline is None else load_baseline(baseline)
     with ExitStack() as outputs:
         files = {path: outputs.enter_context(atomic_file(path, option))
                  for path, option in ((json_file, "--json"), (plot, "--plot")) if path is not None}
         with step_bar(steps(machines, names, orders)) as step:
             rows = list(bench(machines, names, orders,
-                              None if engine == MODEL else make_engine(engine), step))
+                              None if engine == MODEL else make_engine(engine), step, looking))
         if json_file is not None:
             facts = {"command_line": command_line, "rows": bench_facts(rows)}
             with output_errors(json_file, "--json"):

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from math import gcd
 
 import numpy as np
 
@@ -19,7 +20,12 @@ from ...golden.cycles.cycle_model import predict_cycles
 from ...golden.cycles.merge_clocks import predict_merge
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import merge_card, parse_cards
+from ...golden.specification.card_order import (
+    DIRECT_MERGE,
+    FRAME_UNIT,
+    merge_card,
+    parse_cards,
+)
 from ...golden.specification.configuration import MachineConfiguration, Packet
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -28,13 +34,36 @@ from .cage import Cage, CageJob, CageRun, Refused
 
 
 def repeated_piece(cards: str) -> str:
-    """The shortest order of cards of which ``cards`` is a repetition.
+    """The shortest order of cards of which ``cards`` is a repetition; of frame units there is no
+    more than one set, and where nodes merge directly elements and units repeat apart.
 
     >>> repeated_piece("4x(PMMC)"), repeated_piece("PMMPMM"), repeated_piece("PMMPM")
     ('PMMC', 'PMM', 'PMMPM')
+    >>> repeated_piece("4x(PMMS)FF"), repeated_piece("4xP D 8xM")
+    ('PMMSFF', 'PDMM')
     """
     spelled = parse_cards(cards)
-    return spelled[:(spelled + spelled).find(spelled, 1)]
+    if DIRECT_MERGE in spelled:
+        elements, _, units = spelled.partition(DIRECT_MERGE)
+        copies = gcd(len(elements), len(units)) or 1
+        return elements[::copies] + DIRECT_MERGE + units[::copies]
+    nodes = spelled.rstrip(FRAME_UNIT)
+    return nodes[:(nodes + nodes).find(nodes, 1)] + spelled[len(nodes):]
+
+
+def repeated(piece: str, copies: int) -> str:
+    """The cards of a cage of so many.
+
+    >>> repeated("PMMC", 4), repeated("PMMSFF", 4), repeated("PDMM", 4), repeated("PMM", 1)
+    ('4x(PMMC)', '4x(PMMS)FF', '4x(P)D4x(MM)', 'PMM')
+    """
+    if copies == 1:
+        return piece
+    elements, direct, units = piece.partition(DIRECT_MERGE)
+    if direct:
+        return f"{copies}x({elements}){direct}{copies}x({units})"
+    nodes = piece.rstrip(FRAME_UNIT)
+    return f"{copies}x({nodes}){piece[len(nodes):]}"
 
 
 def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> DisplayList:
@@ -85,8 +114,7 @@ class Place:
 
     @property
     def cage(self) -> Cage:
-        return Cage(f"{self.nodes}x({self.piece})" if self.nodes > 1 else self.piece,
-                    self.retained)
+        return Cage(repeated(self.piece, self.nodes), self.retained)
 
     @property
     def copies(self) -> int:

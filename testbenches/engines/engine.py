@@ -31,7 +31,8 @@ class Reset(NamedTuple):
 class Job:
     """Commands for one machine, from reset on.
 
-    ``commands``         command words, in order; any words, valid or not
+    ``commands``         command words, in order; any words, valid or not.  The compiled engine
+                         takes them while it runs, so that they may be made one after another
     ``responses``        how many responses the machine owes in all, or since the last reset; the
                          run ends when they are in and a whole scan has been seen since the last
                          ``FRAME_SHOWN``

@@ -41,6 +41,7 @@ class _Run:
         self.progress = progress
         self.monitor = VideoMonitor(job.configuration)
         self.responses: list[tuple[ResponseKind, int, int]] = []
+        self.commands = list(job.commands)
         self.accepted: list[int] = []
         self.resets = list(reversed(job.resets))  # the next one is the last
         # Since the last reset: the words sent, and how many responses had come before it.
@@ -91,10 +92,10 @@ class _Run:
         receive = Pace(self.job.stall_seed, salt=1)
 
         def next_word() -> None:
-            if self.sent == len(self.job.commands):
+            if self.sent == len(self.commands):
                 send.stop()
             else:
-                ctx.set(commands.payload, self.job.commands[self.sent])
+                ctx.set(commands.payload, self.commands[self.sent])
                 send.go()
 
         def reset_if(at: int) -> None:
@@ -116,7 +117,7 @@ class _Run:
             if self.watch is not None:
                 self.watch.clock(
                     self.cycle, activity,
-                    self.job.commands[self.sent] if taken and offered else None,
+                    self.commands[self.sent] if taken and offered else None,
                     response.kind if given and open_ else None)
             if taken and offered:
                 self.accepted.append(self.cycle)
@@ -168,7 +169,7 @@ class _Run:
         if self.job.maximum_cycles is not None and self.cycle > self.job.maximum_cycles:
             raise TimeoutError(
                 f"no end after {self.cycle} cycles: {self.sent} of "
-                f"{len(self.job.commands)} commands taken, {self._received} of "
+                f"{len(self.commands)} commands taken, {self._received} of "
                 f"{self.job.responses} responses")
 
     @property
@@ -176,7 +177,7 @@ class _Run:
         return len(self.responses) - self.outdated
 
     def _finished(self) -> bool:
-        if (self.resets or self.sent < len(self.job.commands)
+        if (self.resets or self.sent < len(self.commands)
                 or self._received < self.job.responses):
             return False
         if self.shown_cycle is None:

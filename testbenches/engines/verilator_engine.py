@@ -9,10 +9,12 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from importlib import resources
 from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +32,7 @@ from .verilator_tool import ToolMissingError, VerilatorTool, find_verilator
 #: A response in the results; a depth buffer has hundreds of thousands.
 _RESPONSE = np.dtype([("tag", "S1"), ("kind", "u1"), ("value", "<u4"), ("cycle", "<u8")])
 _RESPONSES_AT_ONCE = 1 << 14
+_COMMANDS_AT_ONCE = 1 << 10
 _KINDS = {int(kind): kind for kind in ResponseKind}
 
 
@@ -58,12 +61,11 @@ class VerilatorEngine:
             program, fresh = self.build(job.configuration, progress)
             built = time.perf_counter()
             with tempfile.TemporaryDirectory(prefix="cardcage-") as folder:
-                commands, results = Path(folder, "commands"), Path(folder, "results")
-                commands.write_bytes(_command_file(job))
-                arguments = [program, commands, results, job.responses, _seed(job.memory_seed),
+                results = Path(folder, "results")
+                arguments = [program, results, job.responses, _seed(job.memory_seed),
                              _seed(job.stall_seed), job.maximum_cycles or 0,
                              *(number for reset in job.resets for number in reset)]
-                _watch([str(argument) for argument in arguments], progress)
+                _watch([str(argument) for argument in arguments], job, progress)
                 recorded = results.read_bytes()
         run = _read(job, recorded)
         return replace(run, seconds=time.perf_counter() - built,
@@ -109,22 +111,33 @@ def _seed(seed: int | None) -> int:
     return -1 if seed is None else seed & 0x7FFF_FFFF
 
 
-def _command_file(job: Job) -> bytes:
-    size = 4 * command_words(job.configuration)
-    return b"".join(int(word).to_bytes(size, "little") for word in job.commands)
+def _send(job: Job, process: subprocess.Popen[bytes]) -> None:
+    """Every command as soon as it is made; none after the program's end."""
+    size, commands, words = 4 * command_words(job.configuration), process.stdin, iter(job.commands)
+    assert commands is not None
+    try:
+        with suppress(BrokenPipeError), commands:
+            while some := list(islice(words, _COMMANDS_AT_ONCE)):
+                commands.write(b"".join(int(word).to_bytes(size, "little") for word in some))
+    except BaseException:
+        process.kill()  # it would wait for what does not come
+        raise
 
 
-def _watch(arguments: list[str], progress: Progress | None) -> None:
-    """Run the program; every line it prints is progress."""
-    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, errors="replace") as process:
+def _watch(arguments: list[str], job: Job, progress: Progress | None) -> None:
+    """Run the program; every line it prints is progress.  Commands are made while it runs."""
+    with ThreadPoolExecutor(1) as host, subprocess.Popen(
+            arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+            ) as process:
         try:
             assert process.stdout is not None and process.stderr is not None
+            sent = host.submit(_send, job, process)
             for line in process.stdout:
                 if progress is not None:
                     cycles, responses = line.split()
                     progress(int(cycles), int(responses))
-            failure = process.stderr.read().strip()
+            sent.result()
+            failure = process.stderr.read().decode(errors="replace").strip()
         except BaseException:
             process.kill()
             raise

@@ -1,10 +1,11 @@
 // Host and screen of a Cardcage machine, compiled with its Verilated model.
 //
-// usage: machine COMMANDS RESULTS expected-responses memory-seed stall-seed maximum-cycles
+// usage: machine RESULTS expected-responses memory-seed stall-seed maximum-cycles
 //                [cycle command]...
 //
-// COMMANDS holds command words as little-endian 32-bit words; a negative seed is none.  In each
-// cycle that is given the machine is reset, and the host goes on with the command beside it.
+// The standard input has the commands as little-endian 32-bit words, up to its end; where the next
+// one is late the machine's time stands still.  A negative seed is none.  In each cycle that is given
+// the machine is reset, and the host goes on with the command beside it.
 // RESULTS gets records, each of which begins with its code: RESPONSE kind value cycle, SCAN cycle
 // and a picture, COMMANDS the number of commands taken and the cycle of each, END why, cycles and a
 // reason; of a machine that is observed also ACTIVITY first cycle, clocks, clocks a bucket, buckets,
@@ -186,16 +187,32 @@ class Watch {
 };
 #endif
 
-std::vector<uint32_t> read_words(const char* path) {
-    FILE* file = std::fopen(path, "rb");
-    if (!file) { std::perror(path); std::exit(2); }
-    std::vector<uint32_t> words;
-    uint32_t buffer[4096];
-    size_t count;
-    while ((count = std::fread(buffer, 4, 4096, file))) words.insert(words.end(), buffer, buffer + count);
-    std::fclose(file);
-    return words;
-}
+// The host's commands, one after another as they come; all are kept only for a host that may have
+// to go back.
+class Commands {
+  public:
+    explicit Commands(bool goes_back) : goes_back_(goes_back) {}
+
+    // The words of a command: of the next one, of an earlier one where the host goes back; null
+    // after the last one.
+    const uint32_t* words(uint64_t number) {
+        while (number >= read_) {
+            const size_t place = goes_back_ ? words_.size() : 0;
+            words_.resize(place + COMMAND_WORDS);
+            if (std::fread(&words_[place], 4, COMMAND_WORDS, stdin) != COMMAND_WORDS) {
+                words_.resize(place);
+                return nullptr;
+            }
+            ++read_;
+        }
+        return &words_[goes_back_ ? number * COMMAND_WORDS : 0];
+    }
+
+  private:
+    const bool goes_back_;
+    std::vector<uint32_t> words_;
+    uint64_t read_ = 0;
+};
 
 int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
     const auto began = std::chrono::steady_clock::now();
@@ -215,8 +232,8 @@ int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
 int main(int argc, char** argv) {
     VerilatedContext context;
     const bool is_bare = argc == 3 && !std::strcmp(argv[1], "bare");
-    if (!is_bare && (argc < 7 || argc % 2 == 0)) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
-    const int64_t memory_seed = is_bare ? -1 : std::atoll(argv[4]);
+    if (!is_bare && (argc < 6 || argc % 2 == 1)) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
+    const int64_t memory_seed = is_bare ? -1 : std::atoll(argv[3]);
     if (memory_seed >= 0) {
         context.randReset(2);
         context.randSeed(static_cast<int>(memory_seed % 0x7fffffff) + 1);
@@ -226,17 +243,15 @@ int main(int argc, char** argv) {
     machine.rst = 0;
     if (is_bare) return bare(context, machine, std::strtoull(argv[2], nullptr, 10));
 
-    const std::vector<uint32_t> words = read_words(argv[1]);
-    const uint64_t commands = words.size() / COMMAND_WORDS;
-    FILE* results = std::fopen(argv[2], "wb");
-    if (!results) { std::perror(argv[2]); return 2; }
-    const uint64_t expected = std::strtoull(argv[3], nullptr, 10);
-    const int64_t stall_seed = std::atoll(argv[5]);
-    const uint64_t maximum = std::strtoull(argv[6], nullptr, 10);
+    FILE* results = std::fopen(argv[1], "wb");
+    if (!results) { std::perror(argv[1]); return 2; }
+    const uint64_t expected = std::strtoull(argv[2], nullptr, 10);
+    const int64_t stall_seed = std::atoll(argv[4]);
+    const uint64_t maximum = std::strtoull(argv[5], nullptr, 10);
 
     struct Reset { uint64_t cycle, command; };
     std::vector<Reset> resets;
-    for (int place = 7; place < argc; place += 2)
+    for (int place = 6; place < argc; place += 2)
         resets.push_back({std::strtoull(argv[place], nullptr, 10),
                           std::strtoull(argv[place + 1], nullptr, 10)});
     auto reset = resets.begin();
@@ -245,18 +260,24 @@ int main(int argc, char** argv) {
     Monitor monitor(results);
     const auto watch = std::make_unique<Watch>(results);
     std::vector<uint64_t> accepted;
-    accepted.reserve(commands);
+    Commands commands(!resets.empty());
+    const uint32_t* words = nullptr;  // of the command after the one that is offered
+    bool offers = false;
+    uint8_t opcode = 0;
     uint64_t sent = 0, received = 0, cycle = 0, shown_cycle = 0;  // the first two since a reset
     bool shown = false;
     char why = End::MAXIMUM;
     const char* reason = "";
 
     const auto next_command = [&] {
-        if (sent == commands) { send.stop(); return; }
-        std::memcpy(&machine.PORT(commands, payload), &words[sent * COMMAND_WORDS],
-                    4 * COMMAND_WORDS);
+        offers = words;
+        if (!offers) { send.stop(); return; }
+        std::memcpy(&machine.PORT(commands, payload), words, 4 * COMMAND_WORDS);
+        opcode = *words & OPCODE_MASK;
+        words = commands.words(sent + 1);
         send.go();
     };
+    words = commands.words(0);
     next_command();
     receive.go();
     while (maximum == 0 || cycle <= maximum) {
@@ -271,8 +292,7 @@ int main(int argc, char** argv) {
         const bool given = receive.high() && machine.PORT(responses, valid);
         const uint64_t response = machine.PORT(responses, payload);
         ++cycle;
-        watch->clock(cycle, machine, taken ? words[sent * COMMAND_WORDS] & OPCODE_MASK : 0,
-                     given ? response & KIND_MASK : 0);
+        watch->clock(cycle, machine, taken ? opcode : 0, given ? response & KIND_MASK : 0);
         bool finished = false;
         if (machine.PORT(pins, pixel)) {
             if (!monitor.sample(cycle, machine.PORT(pins, active), machine.PORT(pins, vertical_sync),
@@ -281,7 +301,7 @@ int main(int argc, char** argv) {
                 reason = monitor.failure();
                 break;
             }
-            finished = reset == resets.end() && sent + taken == commands
+            finished = reset == resets.end() && (taken ? !words : !offers)
                        && received + given >= expected && (!shown || monitor.shown_since(shown_cycle));
         }
         machine.clk = 1;
@@ -303,6 +323,7 @@ int main(int argc, char** argv) {
             received = 0;
             shown = false;
             monitor.restart();
+            words = commands.words(sent);
             next_command();
         }
         if (cycle % PROGRESS_CYCLES == 0) {
@@ -321,7 +342,7 @@ int main(int argc, char** argv) {
     std::fwrite(&cycle, sizeof cycle, 1, results);
     std::fputs(reason, results);
     const bool failed = std::ferror(results);
-    if (std::fclose(results) || failed) { std::perror(argv[2]); return 2; }  // a full disk
+    if (std::fclose(results) || failed) { std::perror(argv[1]); return 2; }  // a full disk
     machine.final();
     return 0;
 }

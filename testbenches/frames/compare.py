@@ -99,7 +99,8 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
     """Judge ``simulation``, a frame of ``display_list`` drawn by a machine of ``configuration``.
 
     Colour is compared as it left the video pins, at the highest resolution; depth as it was read
-    back, at the machine's.  Raises ``InputError`` for a list that is too wide for the machine.
+    back, if it was, at the machine's.  Raises ``InputError`` for a list that is too wide for the
+    machine.
 
     >>> import cardcage
     >>> machine = cardcage.MachineConfiguration(cards="PM", width=16, height=16, fraction_bits=28)
@@ -118,10 +119,15 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
         golden = bit_true.draw(fitting, fraction_bits=configuration.fraction_bits,
                                shading=configuration.shading, **shifts)
     expected = organisation.video(golden.color)
-    depth_orphans = simulation.depth < 0
-    color_orphans = organisation.video(depth_orphans)
+    depth = simulation.depth
+    if depth is None:  # nothing of it is compared
+        depth = np.full_like(golden.depth, -1)
+        color_orphans = organisation.video(~organisation.owned_pixels)
+    else:
+        color_orphans = organisation.video(depth < 0)
+    depth_orphans = depth < 0
     color_different = (simulation.video != expected).any(axis=2) & ~color_orphans
-    depth_different = (simulation.depth != golden.depth) & ~depth_orphans
+    depth_different = (depth != golden.depth) & ~depth_orphans
     return Comparison(
         golden=golden,
         exact_fraction_bits=needed,
@@ -130,11 +136,11 @@ def compare(configuration: MachineConfiguration, display_list: DisplayList,
         depth_different=depth_different,
         color_orphans=color_orphans,
         depth_orphans=depth_orphans,
-        depth_max_error=_greatest(simulation.depth, reference.depth, ~depth_orphans),
+        depth_max_error=_greatest(depth, reference.depth, ~depth_orphans),
         color_max_error=_greatest(simulation.video, organisation.video(reference.color),
                                   ~color_orphans),
         first_difference=_first_difference(
-            configuration, display_list, simulation, golden,
+            configuration, display_list, simulation.video, depth, golden,
             color_different | organisation.video(depth_different)),
     )
 
@@ -148,7 +154,8 @@ def _greatest(got: NDArray[np.integer], wanted: NDArray[np.integer],
 def _first_difference(
     configuration: MachineConfiguration,
     display_list: DisplayList,
-    simulation: Simulation,
+    video: NDArray[np.uint8],
+    depth: NDArray[np.int64],
     golden: Picture,
     different: NDArray[np.bool_],
 ) -> FirstDifference | None:
@@ -162,7 +169,7 @@ def _first_difference(
         pixel=(x, y),
         machine_pixel=(column, row),
         expected=PixelValue(_color(golden.color[row, column]), int(golden.depth[row, column])),
-        got=PixelValue(_color(simulation.video[y, x]), int(simulation.depth[row, column])),
+        got=PixelValue(_color(video[y, x]), int(depth[row, column])),
         winner=int(golden.winner[row, column]),
         fragments=exact.fragments(
             display_list, shading=configuration.shading, pixel=(column, row),

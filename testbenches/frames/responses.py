@@ -44,7 +44,8 @@ class Simulation:
 
     ``video``            uint8 (height, width, 3), highest resolution, from the video pins
     ``depth``            int64 (h, w) at the machine's resolution, read back through the controller;
-                         -1 where the pixel's unit belongs to no processing element
+                         -1 where the pixel's unit belongs to no processing element; None where
+                         they were not read
     ``resolution``       width and height that the machine reported
     ``work``             one entry per processing element, left to right
     ``owned``, ``total`` memory units in some domain, memory units in the cage
@@ -62,7 +63,7 @@ class Simulation:
     """
 
     video: NDArray[np.uint8]
-    depth: NDArray[np.int64]
+    depth: NDArray[np.int64] | None
     resolution: tuple[int, int]
     work: Sequence[Work]
     owned: int
@@ -81,6 +82,10 @@ class Simulation:
     sent: Sequence[int] = ()
     taken: Sequence[int] = ()
     followed: Sequence[int] = ()
+
+
+#: In place of a read-back, of a frame whose depths were not read.
+NOT_READ = -1
 
 
 class Answers:
@@ -135,17 +140,15 @@ class Answers:
 
         Its work is what that ``reading`` of the counters says, its activity the record that ends
         with the reading, if the engine keeps any; its depths are those of that ``read_back``, by
-        default as if each frame's were read back once.
+        default as if each frame's were read back once, or ``NOT_READ``.
         """
         run, organisation = self._run, self._organisation
-        words = organisation.depths_read_back
-        depths = words * (number if read_back is None else read_back)
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
         [units] = self._fields(ResponseKind.UNITS)
         return Simulation(
             video=next(scan.picture for scan in run.scans if scan.cycle > shown),
-            depth=organisation.depth_image(
-                self._values[ResponseKind.DEPTH][depths:depths + words]),
+            depth=None if read_back == NOT_READ else self._depth(
+                number if read_back is None else read_back),
             resolution=self._resolution,
             work=[Work(node, domain["first"], domain["units"], int(fragments), int(busy))
                   for (node, *_), domain, fragments, busy in zip(
@@ -168,3 +171,9 @@ class Answers:
             notes=run.notes,
             activity=run.activity[reading] if run.activity else None,
         )
+
+    def _depth(self, read_back: int) -> NDArray[np.int64]:
+        words = self._organisation.depths_read_back
+        begin = words * read_back
+        return self._organisation.depth_image(
+            self._values[ResponseKind.DEPTH][begin:begin + words])

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import Any
 
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
-from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..frames.rendering import Rendering
 from ..support.any_characters import readable
 from .activity_chart import activity_chart, timeline_chart
+from .card_groups import card_groups
 from .frame_facts import report_facts
 from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
 from .page import page_environment
@@ -28,66 +26,41 @@ REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "differen
                 "display_list.npz")
 
 
-@dataclass(frozen=True)
-class CardGroup:
-    """Neighbouring cards in the drawing of the cage: a processing element and its units, a merge
-    card, or the frame units.
-
-    ``element``  None for units that belong to nobody
-    ``merge``    the letter of a merge card, which is a group by itself
-    ``node``     the node that it ends
-    ``frame``    they are frame units
-    """
-
-    element: int | None
-    units: range
-    merge: str | None = None
-    node: int = 0
-    frame: bool = False
-
-    @property
-    def caption(self) -> str:
-        if self.frame:
-            return "what is shown"
-        if self.merge is not None:
-            return f"ends node {self.node}"
-        if self.element is None:
-            return "owned by nobody"
-        if not self.units:
-            return "owns none"
-        if len(self.units) == 1:
-            return f"owns {self.units[0]}"
-        return f"owns {self.units[0]} to {self.units[-1]}"
-
-
 def write_report(rendering: Rendering, folder: Path) -> None:
     """Write ``REPORT_FILES`` to ``folder``, which exists."""
     facts = report_facts(rendering)
+    write_files(rendering, folder, facts, report_page(rendering, facts))
+
+
+def write_files(rendering: Rendering, folder: Path, facts: dict[str, Any], page: str) -> None:
+    """``REPORT_FILES`` with these facts and that page."""
     (folder / "report.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     (folder / "rtl.png").write_bytes(png(rendering.simulation.video))
     (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
     (folder / "difference.png").write_bytes(png(color_difference(rendering)))
     rendering.scene.display_list.save(folder / "display_list.npz")
-    (folder / "report.html").write_text(readable(report_page(rendering, facts)),
-                                        encoding="utf-8")
+    (folder / "report.html").write_text(readable(page), encoding="utf-8")
 
 
-def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
-    """The page, complete in itself: pictures and chart are inside it."""
+def report_page(rendering: Rendering, facts: dict[str, Any], template: str = "report.html",
+                **more: Any) -> str:
+    """The page, complete in itself: pictures and chart are inside it; ``more`` is for a template
+    that extends this one."""
     environment = page_environment()
     environment.filters["hexadecimal"] = _hexadecimal
-    machine_depth, golden_depth = depth_pictures(rendering)
     # A picture larger than its place loses pixels there: a lone red one must not be among them.
     reach = max(rendering.simulation.video.shape) // PAGE_PICTURE_PIXELS
-    return environment.get_template("report.html").render(
-        facts,
-        rows=[
-            ("Colour", "from the video pins", data_uri(rendering.simulation.video),
+    rows = [("Colour", "from the video pins", data_uri(rendering.simulation.video),
              data_uri(rendering.comparison.expected),
-             data_uri(color_difference(rendering, reach))),
-            ("Depth", "read back, near is light", data_uri(machine_depth), data_uri(golden_depth),
-             data_uri(depth_difference(rendering, reach))),
-        ],
+             data_uri(color_difference(rendering, reach)))]
+    if rendering.simulation.depth is not None:
+        machine_depth, golden_depth = depth_pictures(rendering)
+        rows.append(("Depth", "read back, near is light", data_uri(machine_depth),
+                     data_uri(golden_depth), data_uri(depth_difference(rendering, reach))))
+    return environment.get_template(template).render(
+        facts,
+        rows=rows,
+        **more,
         chart=work_chart(rendering.simulation.work),
         activity_charts=_activity_charts(rendering),
         activity_kinds=ACTIVITY_KINDS,
@@ -100,24 +73,6 @@ def report_page(rendering: Rendering, facts: dict[str, Any]) -> str:
 def _activity_charts(rendering: Rendering) -> list[str]:
     record = rendering.simulation.activity
     return [] if record is None else [activity_chart(record), timeline_chart(record)]
-
-
-def card_groups(configuration: MachineConfiguration) -> list[CardGroup]:
-    """The cage from left to right."""
-    organisation = organisation_of(configuration)
-    groups = []
-    elements = count()
-    for number, node in enumerate(organisation.each):
-        orphans = node.domains[0].first if node.domains else node.units
-        if orphans:
-            groups.append(CardGroup(None, range(orphans)))
-        groups += [CardGroup(next(elements), range(domain.first, domain.first + domain.units))
-                   for domain in node.domains]
-        if organisation.merges:
-            groups.append(CardGroup(None, range(0), configuration.merge, number))
-    if configuration.snoops:
-        groups.append(CardGroup(None, range(configuration.frame_units), frame=True))
-    return groups
 
 
 def _is_exact(rendering: Rendering) -> bool:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ...golden.scene_display_list import make_display_list
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
+from ..machine_options import MachineOptions, option_words
 
 #: The screen of every case.
 SIZE = 512
@@ -35,6 +36,10 @@ ORDERS: tuple[Order, ...] = ("visible", "random")
 
 #: What is drawn where no case is named: small, middling and thin ones.
 DEFAULT_CASES = ("one_pixel", "right_TL_32", "random_bbox16", "sliver_diag_480")
+
+
+#: Nothing is asked for of how the mesh is looked at.
+AS_IT_IS = MachineOptions()
 
 
 @dataclass(frozen=True)
@@ -62,12 +67,23 @@ class Peer:
 
 @dataclass(frozen=True, eq=False)
 class CaseLists:
-    """``once`` has n triangles, ``twice`` 2n, drawn after it in the same frame."""
+    """``once`` has n triangles, ``twice`` 2n, drawn after it in the same frame; ``looking``: what
+    of the mesh was asked for."""
 
     name: str
     order: Order
     once: DisplayList
     twice: DisplayList
+    looking: MachineOptions = AS_IT_IS
+
+    @property
+    def title(self) -> str:
+        """The name, and what was asked for besides."""
+        return " ".join([self.name, *option_words(self.looking)])
+
+    def repeated(self, times: int) -> CaseLists:
+        """The same, with a list that is so many times as long, where there is one."""
+        return case_lists(self.name, self.order, times=times, looking=self.looking)
 
     @property
     def frame(self) -> DisplayList:
@@ -103,8 +119,10 @@ def check_case(name: str) -> str:
     return name
 
 
-def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 1) -> CaseLists:
-    """The display lists of a case, of flat colours; ``InputError`` for an unknown name.
+def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 1,
+               looking: MachineOptions = AS_IT_IS) -> CaseLists:
+    """The display lists of a case, of flat colours; ``InputError`` for an unknown name, and where
+    triangles that are made on the screen are to be looked at in another way.
 
     A peers' list is repeated until it has ``LEAST_TRIANGLES``, and all that ``times`` over; the
     mesh is one pass whatever ``times`` says.
@@ -116,15 +134,18 @@ def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 
     check_case(name)
     random = np.random.default_rng([seed, ORDERS.index(order)])
     if name == MESH:
-        once, twice = _mesh(order, random)
+        once, twice = _mesh(order, random, looking)
+    elif looking != AS_IT_IS:
+        raise InputError(f"{option_words(looking)[0]}: the triangles of {name} are made on the "
+                         f"screen; leave it out, or take the case {MESH} alone")
     else:
         once, twice = _repeated(_triangles()[name], times, order, random)
-    return CaseLists(name, order, once, twice)
+    return CaseLists(name, order, once, twice, looking)
 
 
-def _list(position: NDArray[np.int32], depth: NDArray[np.int64],
-          color: NDArray[np.uint8]) -> DisplayList:
-    return DisplayList(SIZE, SIZE, position, depth, color, SUB_BITS, DEPTH_BITS)
+def _list(position: NDArray[np.int32], depth: NDArray[np.int64], color: NDArray[np.uint8],
+          background: tuple[int, int, int] = (0, 0, 0)) -> DisplayList:
+    return DisplayList(SIZE, SIZE, position, depth, color, SUB_BITS, DEPTH_BITS, background)
 
 
 def _repeated(triangles: NDArray[np.int32], times: int, order: Order,
@@ -145,15 +166,16 @@ def _repeated(triangles: NDArray[np.int32], times: int, order: Order,
             _list(position[once:], depth[once:], color[once:]))
 
 
-def _mesh(order: Order, random: np.random.Generator) -> tuple[DisplayList, DisplayList]:
+def _mesh(order: Order, random: np.random.Generator, looking: MachineOptions
+          ) -> tuple[DisplayList, DisplayList]:
+    asked = {**looking.looking(), "background": looking.background or (0, 0, 0)}
     mesh = make_display_list(MESH_SCENE, width=SIZE, height=SIZE, sub_bits=SUB_BITS,
-                             depth_bits=DEPTH_BITS, shading="flat", background=(0, 0, 0)
-                             ).display_list
+                             depth_bits=DEPTH_BITS, shading="flat", **asked).display_list
     shuffled = np.arange(mesh.triangles)
     if order == "random":
         random.shuffle(shuffled)
     third = ((1 << DEPTH_BITS) - 1) // 3
     passes = [_list(mesh.position[shuffled], mesh.depth[shuffled] // 3 + (2 - turn) * third,
-                    mesh.color[shuffled]) for turn in range(3)]
+                    mesh.color[shuffled], mesh.background) for turn in range(3)]
     once, second, third_pass = passes
     return once, second.followed_by(third_pass)

@@ -12,7 +12,8 @@ from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.engine import Engine
 from ..frames.setup_timing import setup_timing
-from .cases import CaseLists, Order, case_lists
+from ..machine_options import MachineOptions
+from .cases import AS_IT_IS, CaseLists, Order, case_lists
 from .machines import BenchMachine
 from .measure import Measurement, measure
 
@@ -64,13 +65,14 @@ class BenchRow:
 
 
 def bench(machines: Sequence[BenchMachine], cases: Sequence[str], orders: Sequence[Order],
-          engine: Engine | None, step: Callable[[str], None] = lambda doing: None
-          ) -> Iterator[BenchRow]:
+          engine: Engine | None, step: Callable[[str], None] = lambda doing: None,
+          looking: MachineOptions = AS_IT_IS) -> Iterator[BenchRow]:
     """Every case in every order on every machine; by the model alone where ``engine`` is None.
 
-    ``step`` is told what comes next.  Raises what ``measure.measure`` raises.
+    ``step`` is told what comes next; ``looking`` says how a mesh is looked at.  Raises what
+    ``case_lists`` and ``measure.measure`` raise.
     """
-    shortest = [case_lists(case, order) for order in orders for case in cases]
+    shortest = [case_lists(case, order, looking=looking) for order in orders for case in cases]
     for machine in machines:
         for begin in range(0, len(shortest), _TOGETHER):
             some = shortest[begin:begin + _TOGETHER]
@@ -104,11 +106,11 @@ def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, Bench
     began = time.perf_counter()
     once = predict_cycles(configuration, case.once, setup=setup)
     if (times := _times(configuration, once)) > 1:
-        case = case_lists(case.name, case.order, times=times)
+        case = case.repeated(times)
         once = predict_cycles(configuration, case.once, setup=setup)
     twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
     seconds = time.perf_counter() - began
     return case, BenchRow(
-        machine, case.name, case.order, case.once.triangles, measured=None,
+        machine, case.title, case.order, case.once.triangles, measured=None,
         predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
         binding=twice.binding, prediction_seconds=seconds)

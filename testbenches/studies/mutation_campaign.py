@@ -16,8 +16,8 @@ from queue import SimpleQueue
 
 import click
 
-from cardcage.testbenches.command_line.progress import step_bar
 from cardcage.testbenches.support.atomic_output import atomic_file
+from cardcage.testbenches.support.progress import step_bar
 from cardcage.testbenches.support.text_table import TextTable
 
 from .mutation.campaign_trial import BEYOND, Copy, Outcome, own_tests

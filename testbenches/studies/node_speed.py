@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 import click
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
-from cardcage.golden.cycles.merge_clocks import merge_clocks
+from cardcage.golden.cycles.merge_clocks import predict_merge
 from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.machine_plan import plan
@@ -68,7 +68,6 @@ def measured(case: str, display_list: DisplayList, cards: str, ports: int, retai
     model = predict_cycles(machine, display_list, retained=retained)
     _, traffic = merge_cage(machine, display_list)
     after_drawing = organisation_of(machine).merges_after_drawing
-    steps = merge_clocks(machine, traffic) if after_drawing else []
     bound = sum(1.05 * pixels + 64 + 4 * 2**step + machine.words / 4096
                 for step, pixels in enumerate(traffic.steps)) if after_drawing else 0
     assert simulation.merge_cycles is not None
@@ -78,7 +77,8 @@ def measured(case: str, display_list: DisplayList, cards: str, ports: int, retai
         case, cards, retained, packet, machine.order_bits, display_list.triangles,
         simulation.draw_cycles, model.bound, model.cycles,
         fragments / simulation.draw_cycles, simulation.draw_cycles / display_list.triangles,
-        simulation.merge_cycles - simulation.draw_cycles, sum(steps), bound, traffic.pixels,
+        simulation.merge_cycles - simulation.draw_cycles, predict_merge(machine, display_list),
+        bound, traffic.pixels,
         compare(machine, display_list, simulation).equal
         and all(simulation.sent[node] == pixels for node, pixels in sends.items()))
 

@@ -17,6 +17,7 @@ from cardcage.golden.cycles.broadcast import LIST_LATENCY, SetupTiming
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
 from cardcage.golden.cycles.one_port_lanes import LANE_START
+from cardcage.golden.cycles.received_pixels import LANE_CLOCKS
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -56,6 +57,7 @@ def test_a_lane():
     # the last read every other one has no write, and these are lost.
     assert OnePortLane.latency % 2 == 1
     assert OnePortDepthTest.waiting + (OnePortLane.latency - 1) // 2 == LANE_START
+    assert OnePortDepthTest.waiting == LANE_CLOCKS
 
 
 def test_set_up():

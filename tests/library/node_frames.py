@@ -84,6 +84,13 @@ def immediate(configuration, display_list, *, prepared=False):
     return frame_commands(replace(configuration, list_words=0), display_list)
 
 
+def ways(configuration, display_list):
+    """The commands of one frame: triangles sent one by one, prepared or as vertices, or loaded."""
+    both = (False, True) if configuration.setup == "hardware" else (False,)
+    return [*(immediate(configuration, display_list, prepared=prepared) for prepared in both),
+            frame_commands(configuration, display_list)]
+
+
 def loads(configuration, display_list):
     """Those that load a display list into the nodes' lists, after what is there."""
     clear, *words, _start, _draw, _end = frame_commands(configuration, display_list)
@@ -129,12 +136,14 @@ def check_merged(configuration, display_list, simulation):
     picture, traffic = merge_cage(configuration, display_list)
     np.testing.assert_array_equal(simulation.depth, picture.picture.depth)
     assert list(simulation.sent) == sent_by_node(configuration, traffic)
+    if configuration.merges_directly:
+        assert simulation.taken == traffic.taken.sum(axis=0).tolist()
 
 
 def sent_by_node(configuration, traffic):
     """Of a chain, whose last node sends to the pins what the others send to the next one."""
     sent = [0] * configuration.nodes
-    if not organisation_of(configuration).merges_after_drawing:
+    if configuration.scans_rank:
         sent[-1] = configuration.width * configuration.height
     for send in traffic.sends:
         sent[send.sender] += send.pixels

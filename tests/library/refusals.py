@@ -14,6 +14,13 @@ BAD_SCENES_AND_MACHINES = [
     (["--size", "4096x4096", "--cards", "PM"], "words"),
     (["--fraction-bits", "65"], "fraction-bits"),
     (["--preset", "huge"], "huge"),
+    (["--view", "10"], "'10' is not 2 numbers, AZIMUTH,ELEVATION"),
+    (["--view", "0,91"], "elevation: 91.0 is not from -90 to 90 degrees"),
+    (["--zoom", "nan"], "zoom: nan is not from 0.05 to 30.0"),
+    (["--light", "0,0,0"], "light: (0.0, 0.0, 0.0) is no direction"),
+    (["--background", "nix"], "'nix' is no colour; take a name such as navy"),
+    (["random", "--cull"], "random: cull: its triangles are made on the screen"),
+    (["hard:crossing-3-lsb", "--view", "0,0"], "view: a display list is already projected and lit"),
 ]
 
 

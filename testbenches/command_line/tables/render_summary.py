@@ -5,6 +5,7 @@ from __future__ import annotations
 from ....golden.organisations.organisation_of import organisation_of
 from ...frames.compare import FirstDifference
 from ...frames.rendering import Rendering
+from ...render_frames import FramesRendering
 
 
 def render_summary(rendering: Rendering) -> str:
@@ -60,3 +61,37 @@ def _first(difference: FirstDifference) -> str:
     expected, got = difference.expected, difference.got
     return (f"pixel {difference.pixel}: expected colour {expected.color} depth {expected.depth}, "
             f"got {got.color} depth {got.depth}; {len(difference.fragments)} fragments fell on it")
+
+
+def frames_summary(rendering: FramesRendering) -> str:
+    """The same of a sequence of pictures."""
+    frames, shown = rendering.frames, rendering.shown
+    pixels = sum(frame.comparison.pixels_compared for frame in frames)
+    depths = sum(frame.comparison.depths_compared for frame in frames)
+    wrong = [frame.number for frame in frames if not frame.equal]
+    verdict = (f"equal: {len(frames):,} pictures, {pixels:,} colours and {depths:,} depths "
+               "compared, 0 different")
+    if wrong:
+        verdict = f"DIFFERENT: {len(wrong):,} of {len(frames):,} pictures, first picture {wrong[0]}"
+    draw = [frame.simulation.draw_cycles for frame in frames]
+    scans = [frame.scans for frame in frames[:-1]]
+    simulation = shown.simulation
+    lines = [
+        verdict,
+        _line("scene", f"{shown.scene.name}: {min(frame.triangles for frame in frames):,} to "
+              f"{max(frame.triangles for frame in frames):,} triangles"),
+        _line("machine", f"{shown.configuration.cards}, {_precision(shown)}"),
+        _line("cycles", f"{min(draw):,} to {max(draw):,} to draw a picture; {simulation.cycles:,} "
+              f"simulated by {simulation.engine} in {simulation.seconds:.1f} s"
+              + (f", after {simulation.build_seconds:.0f} s of compiling the model"
+                 if simulation.build_seconds else "")),
+    ]
+    if scans:
+        lines.append(_line("shown", f"{min(scans)} to {max(scans)} scans each; "
+                           f"{scans.count(1):,} of {len(scans):,} on one scan, which is the "
+                           "least"))
+    if shown.comparison.first_difference is not None:
+        lines.insert(1, _line("first", _first(shown.comparison.first_difference)))
+    if rendering.report is not None:
+        lines.append(_line("report", str(rendering.report)))
+    return "\n".join(lines)

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from wide_machines import wide_machine
 
-from cardcage.golden.merging.cage import merge_cage
+from cardcage.golden.merging.cage import cage_pictures, merge_cage
+from cardcage.golden.merging.tree import tree_sends
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import exact
@@ -66,10 +67,13 @@ def test_a_tree_sends_what_was_drawn_with_its_place():
     assert [send[:4] for send in traffic.sends] == [
         (step, sender, receiver, drawn[group].any(axis=0).sum())
         for step, sender, receiver, group in groups]
-    # What is kept is what of it shows when the step is done; in the end, of node 4.
-    assert all(0 < send.kept <= send.pixels for send in traffic.sends)
+    sends = list(tree_sends(cage_pictures(machine, LIST)))
+    for send, (_, _, _, group) in zip(sends, groups, strict=True):
+        np.testing.assert_array_equal(send.sent, drawn[group].any(axis=0))
+        assert send.stored.any() and not (send.stored & ~send.sent).any()
+    # What is stored is what of it shows when the step is done; in the end, of node 4.
     winner = merge_cage(machine, LIST)[0].picture.winner  # dealt out in turn
-    assert traffic.sends[3].kept == ((winner >= 0) & (winner % 5 == 4)).sum()
+    np.testing.assert_array_equal(sends[3].stored, (winner >= 0) & (winner % 5 == 4))
     # Depth, colour, two units in two bits, 12 · 37 words of each in nine.
     assert machine.words == 12 * 37
     assert traffic.pixel_bits == 24 + 24 + 2 + 9

@@ -166,7 +166,7 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
     drawn = np.array([picture.drawn for picture in pictures])
     bus = merge == "snoop"  # all the way to the frame units
     pieces = np.zeros(nodes if bus else nodes - 1, int)
-    for _, sender, receiver, pixels, _ in traffic.sends:
+    for _, sender, receiver, pixels in traffic.sends:
         for piece in range(*((0, nodes) if bus else sorted((sender, receiver)))):
             pieces[piece] += pixels
     np.testing.assert_array_equal(traffic.pieces, pieces)
@@ -179,6 +179,16 @@ def test_traffic_is_what_passes_over_the_backplane(merge):
                 for group in ([1], [3], [5], [2, 3], [4, 5])]
         assert [send.pixels for send in traffic.sends] == sent
         assert traffic.steps == [max(sent[:3]), sent[3], sent[4]]
+    if merge == "snoop":
+        # As the paper words it: whoever has not sent listens, and deletes what is hidden.
+        left, sent = drawn.copy(), []
+        rank = np.array([(picture.picture.depth << 16) + picture.order for picture in pictures])
+        for node in range(nodes):
+            sent.append(int(left[node].sum()))
+            for listener in range(node + 1, nodes):
+                left[listener] &= ~(left[node] & (rank[node] <= rank[listener]))
+        assert traffic.sent == sent
+        assert traffic.pixels == sum(sent) == traffic.busiest_piece
     if merge == "binary swap":
         first = [drawn[1].sum(), drawn[3].sum()]
         groups = [drawn[:2].any(axis=0).ravel(), drawn[2:4].any(axis=0).ravel(),

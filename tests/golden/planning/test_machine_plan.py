@@ -353,3 +353,29 @@ def test_sub_pixel_bits_that_are_not_used_are_dropped(even):
             with_sub_bits(display_list, bits - 1)
     finer = with_sub_bits(display_list, 8)
     np.testing.assert_array_equal(exact.draw(finer).depth, picture.depth)
+
+
+@pytest.mark.parametrize("cards", ["PMM", "3x(PMC)"])
+def test_one_machine_for_several_lists(cards):
+    """It draws each of them exactly, and no width of it could be less."""
+    lists = [random_list(seed) for seed in range(3)]
+    # One of whole pixels, one of halves: all are drawn in the finest units.
+    lists.append(replace(lists[0], position=lists[0].position & -256))
+    machine = plan(lists, cards=cards, retain="C" in cards).configuration
+    alone = [plan(each, cards=cards, retain="C" in cards) for each in lists]
+    for name in ("sub_bits", "fraction_bits", "order_bits", "list_words", "fifo_depth"):
+        assert getattr(machine, name) == max(getattr(each.configuration, name) for each in alone)
+    assert machine.shading == "gouraud" and plan([lists[0]], cards=cards).configuration == (
+        plan(lists[0], cards=cards).configuration)
+    for each in lists:
+        fitting = fitted(machine, each)
+        assert fitting.sub_bits == machine.sub_bits
+        drawn = bit_true.draw(fitting, fraction_bits=machine.fraction_bits)
+        np.testing.assert_array_equal(drawn.depth, exact.draw(each).depth)
+        np.testing.assert_array_equal(drawn.color, exact.draw(each).color)
+    for name in ("coordinate_bits", "edge_column_bits", "edge_height_bits", "edge_fraction_bits"):
+        fewer = {"edge_fraction_bits": 0, name: getattr(machine, name) - 1}
+        narrower = replace(machine, **fewer)
+        with pytest.raises(InputError, match=rf"^display list: {name}"):
+            for each in lists:
+                fitted(narrower, each)

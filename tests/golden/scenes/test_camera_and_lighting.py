@@ -13,7 +13,7 @@ from cardcage.golden.scene_display_list import (
 )
 from cardcage.golden.scenes.built_in.sphere import spheres_mesh
 from cardcage.golden.scenes.built_in.teapot import teapot
-from cardcage.golden.scenes.camera import Camera, framing_camera, transform
+from cardcage.golden.scenes.camera import Camera, View, framing_camera, transform
 from cardcage.golden.scenes.lighting import Lighting, lit_corners
 from cardcage.golden.scenes.mesh import BASE_COLOR, UP_Y, UP_Z, Mesh
 from cardcage.golden.scenes.quantise import PictureFormat
@@ -94,6 +94,60 @@ def test_a_scene_is_seen_from_above_in_front_with_x_to_the_right():
         assert math.degrees(math.asin(direction @ up)) == pytest.approx(30)
         assert direction @ front > 0.7
         assert camera.axes()[0] @ (1, 0, 0) > 0.8
+
+
+@pytest.mark.parametrize("up", [UP_Y, UP_Z])
+@pytest.mark.parametrize("azimuth", [-350.0, -90.0, 0.0, 25.0, 135.0])
+@pytest.mark.parametrize("elevation", [-90.0, -30.0, 0.0, 60.0, 90.0])
+def test_a_view_says_where_the_eye_is(up, azimuth, elevation):
+    mesh = dataclasses.replace(BALL, up=up)
+    straight = framing_camera(mesh, View((0.0, 0.0)))
+    camera = framing_camera(mesh, View((azimuth, elevation)))
+    right, upwards, front = straight.axes()
+    assert np.allclose(upwards, up)
+    direction = np.subtract(camera.eye, camera.target)
+    distance = np.linalg.norm(direction)
+    assert distance == pytest.approx(np.linalg.norm(np.subtract(straight.eye, straight.target)))
+    assert math.degrees(math.asin(direction @ upwards / distance)) == pytest.approx(elevation,
+                                                                                   abs=1e-5)
+    # What is to the right stays level, from wherever it is seen.
+    turned = math.radians(azimuth)
+    assert np.allclose(camera.axes()[0], right * math.cos(turned) - front * math.sin(turned))
+
+
+def test_without_a_view_a_mesh_is_seen_as_it_asks():
+    mesh = teapot(2)
+    assert framing_camera(mesh) == framing_camera(mesh, View())
+    assert framing_camera(BALL, View((25.0, 30.0))).eye == framing_camera(BALL).eye
+
+
+@pytest.mark.parametrize("zoom", [0.05, 0.5, 2.0, 30.0])
+def test_zoom_enlarges_the_middle(zoom):
+    picture = PictureFormat(64, 48)
+    points = BALL.vertices[:40]
+    framed, zoomed = (transform(framing_camera(BALL, view).matrix(picture, BALL.vertices), points)
+                      for view in (View(), View(zoom=zoom)))
+    middle = np.array([32, 24])
+    before, after = (seen[:, :2] / seen[:, 3:] - middle for seen in (framed, zoomed))
+    assert np.allclose(after, before * zoom)
+    assert np.array_equal(framed[:, 2:], zoomed[:, 2:])  # depths stay
+
+
+@pytest.mark.parametrize(("view", "message"), [
+    ({"direction": (math.nan, 0.0)}, "^view: azimuth: nan is not a number of degrees$"),
+    ({"direction": (0.0, 90.5)}, "^view: elevation: 90.5 is not from -90 to 90 degrees$"),
+    ({"zoom": 0.0}, "^zoom: 0.0 is not from 0.05 to 30.0$"),
+    ({"zoom": math.inf}, "^zoom: inf is not from 0.05 to 30.0$"),
+])
+def test_views_that_are_refused(view, message):
+    with pytest.raises(InputError, match=message):
+        View(**view)
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 0.0), (math.nan, 0.0, 1.0), (1e200, 0.0, 0.0)])
+def test_a_light_has_a_direction(direction):
+    with pytest.raises(InputError, match=r"^light: .* is no direction; take three numbers"):
+        Lighting(direction=direction)
 
 
 def test_the_far_plane_is_at_the_end_of_the_scene():
@@ -239,12 +293,32 @@ def test_a_saved_list_is_replayed_as_it_is(tmp_path):
         ({"width": 64}, "width: the display list was made for 48, not 64; leave it out, or make"),
         ({"height": 64}, "height: the display list was made for 32, not 64"),
         ({"sub_bits": 4}, "sub_bits: the display list was made for 8, not 4"),
-        ({"camera": STRAIGHT}, "camera: a display list is already projected"),
         ({"background": (9, 9, 9)}, "background: the display list has (28, 32, 48), not (9, 9, 9)"),
     ):
         with pytest.raises(InputError) as caught:
             make_display_list(path, **wrong)
         assert str(caught.value).startswith(f"{path}: {message}")
+
+
+@pytest.mark.parametrize(("name", "asked"), [
+    ("camera", {"camera": STRAIGHT}), ("view", {"view": View((0.0, 0.0))}),
+    ("zoom", {"view": View(zoom=2.0)}), ("light", {"lighting": Lighting(direction=(0, 0, 1))}),
+    ("cull", {"cull": True})])
+def test_only_a_mesh_can_be_looked_at_in_another_way(tmp_path, name, asked):
+    path = tmp_path / "list.npz"
+    make_display_list("tetra:depth=0").display_list.save(path)
+    for scene, reason in ((path, "list.npz: {}: a display list is already projected and lit"),
+                          ("hard:crossing-3-lsb", "hard:crossing-3-lsb: {}: a display list is"),
+                          ("random", "random: {}: its triangles are made on the screen")):
+        with pytest.raises(InputError) as caught:
+            make_display_list(scene, **asked)
+        assert str(caught.value).startswith(reason.format(name))
+        assert str(caught.value).endswith("; leave it out, or take a mesh")
+
+
+def test_a_camera_is_a_view_already():
+    with pytest.raises(InputError, match=r"^view: the camera says where the eye is; leave one"):
+        make_display_list("tetra:depth=0", camera=STRAIGHT, view=View((0.0, 0.0)))
 
 
 @pytest.mark.parametrize("arguments, message", [

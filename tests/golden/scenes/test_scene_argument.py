@@ -26,6 +26,7 @@ from cardcage.golden.scenes.built_in.sphereflake import (
 )
 from cardcage.golden.scenes.built_in.spheres import spheres
 from cardcage.golden.scenes.built_in.teapot import teapot, teapot_parts
+from cardcage.golden.scenes.built_in.terrain import elevations, terrain
 from cardcage.golden.scenes.built_in.tetra import tetra
 from cardcage.golden.scenes.mesh import Mesh, corner_normals, cross, dot, edge_vectors, face_normals
 from cardcage.golden.scenes.quantise import PictureFormat
@@ -64,7 +65,8 @@ def make(text) -> Mesh:
 def test_listed_triangle_counts_are_those_of_the_scenes():
     listed = {line.name: line.triangles for line in list_scenes()}
     assert listed == {
-        "teapot": 992, "sphereflake": 11648, "tetra": 1024, "spheres": 2048, "random": 200,
+        "teapot": 992, "sphereflake": 11648, "tetra": 1024, "spheres": 2048, "terrain": 1050,
+        "random": 200,
     }  # fmt: skip
     for name in set(listed) - {"random"}:
         assert make(name).triangles == listed[name]
@@ -78,12 +80,30 @@ def test_listed_triangle_counts_are_those_of_the_scenes():
     ("tetra:depth=0", 4),
     ("tetra:depth=3", 256),
     ("spheres:count=5,depth=3", 5 * 512),
+    ("terrain:step=7", 2 * 49 * 57),
+    ("terrain:step=64,relief=0", 2 * 5 * 6),
 ])
 def test_counts_with_arguments(text, triangles):
     scene = parse_scene(text)
     assert isinstance(scene, BuiltInScene)
     assert scene.name == text
     assert scene.triangles == make(text).triangles == triangles
+
+
+# ---- terrain
+
+
+def test_terrain_is_a_surface_over_the_plane_as_high_as_the_elevations():
+    mesh = terrain(16, 3.0)
+    assert (mesh.vertices[:, 2] * 1000 / 3).reshape(22, 26) == pytest.approx(
+        elevations()[::16, ::16])
+    assert elevations().min() == 236 and elevations().max() == 1076
+    assert len(open_edges(mesh.faces)) == 2 * (21 + 25)  # its border, and no other edge
+    corners = mesh.corners()
+    assert cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2].min() > 0
+    east_west, south_north, _ = mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)
+    assert east_west == pytest.approx(29.76) and south_north == pytest.approx(31.08)
+    assert mesh.vertices[0, 1] > mesh.vertices[-1, 1]  # from the far side to the near one
 
 
 # ---- teapot
@@ -265,8 +285,8 @@ def test_random_numbers_never_change():
 @pytest.mark.parametrize("text, message", [
     ("teapto", "scene: 'teapto' is neither a built-in scene nor a file; did you mean teapot?"),
     ("Sphere_flake:depth=2", "did you mean sphereflake?"),
-    ("", "choose one of teapot, sphereflake, tetra, spheres, random"),
-    ("xyzzy", "choose one of teapot, sphereflake, tetra, spheres, random"),
+    ("", "choose one of teapot, sphereflake, tetra, spheres, terrain, random"),
+    ("xyzzy", "choose one of teapot, sphereflake, tetra, spheres, terrain, random"),
     ("tetra:depth=x", "tetra: depth: 'x' is not a whole number from 0 to 9"),
     ("tetra:depth=2.5", "tetra: depth: '2.5' is not a whole number from 0 to 9"),
     ("tetra:depth=-1", "tetra: depth: '-1' is not a whole number from 0 to 9"),

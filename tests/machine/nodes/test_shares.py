@@ -16,23 +16,16 @@ from node_frames import (
     model,
     pictures,
     redrawn,
+    ways,
 )
 from wide_machines import wide_machine
 
 from cardcage.golden.merging.ties import order_matters
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
-from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.simulation import simulate
 
 PACKETS = (1, 3, 10, "contiguous")
-
-
-def ways(configuration, display_list):
-    """The commands of one frame: triangles sent one by one, prepared or as vertices, or loaded."""
-    both = (False, True) if configuration.setup == "hardware" else (False,)
-    return [*(immediate(configuration, display_list, prepared=prepared) for prepared in both),
-            frame_commands(configuration, display_list)]
 
 
 @pytest.mark.parametrize("name", MODELS)

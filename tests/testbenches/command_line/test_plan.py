@@ -73,6 +73,17 @@ def test_table_on_a_terminal(monkeypatch, capsys):
     assert f"draw it: cardcage render {SCENE} --cards PM --size 16x16\n" in shown
 
 
+def test_the_command_looks_at_the_scene_in_the_same_way():
+    options = ["--view", "-20.5,90", "--zoom", 1.5, "--background", "navy", "--cull", "--light",
+               "0.1,-2,3"]
+    planned = facts("tetra:depth=1", *TINY, *options)
+    words = shlex.split(planned["command"])
+    assert "#000080" in words
+    again = facts(*words[2:])
+    assert again == planned
+    assert facts("tetra:depth=1", *TINY)["needs"] != planned["needs"]
+
+
 @pytest.mark.parametrize("options", [[], ["--preset", "tiny", "--max-error", 2],
                                      ["--fraction-bits", 5, "--shading", "flat", "--words", 64]])
 def test_render_and_export_build_this_machine(options):

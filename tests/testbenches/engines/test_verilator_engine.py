@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +21,7 @@ from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.commands import Opcode, ResponseKind
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines import choose_engine as engines
 from cardcage.testbenches.engines import verilator_engine
@@ -268,11 +271,41 @@ def test_a_model_that_cannot_be_started(tmp_path, monkeypatch, program):
     assert not (tmp_path / "named").exists()
 
 
+class Later(Sequence):
+    """Commands that are made when they are asked for, of which one may fail."""
+
+    def __init__(self, words, fails_at=None):
+        self.words, self.fails_at = words, fails_at
+
+    def __len__(self):
+        return len(self.words)
+
+    def __getitem__(self, place):
+        if place == self.fails_at:
+            raise InputError("the list of a later frame is no list")
+        time.sleep(0.001)
+        return self.words[place]
+
+
+def test_commands_may_come_late(engine):
+    """The machine's time stands still meanwhile."""
+    job = frame_job(CONFIGURATION, LIST)
+    at_once = engine.run(job)
+    run = engine.run(replace(job, commands=Later(list(job.commands))))
+    assert run.responses == at_once.responses and run.cycles == at_once.cycles
+    np.testing.assert_array_equal(run.accepted, at_once.accepted)
+
+
+def test_commands_that_cannot_be_made_end_the_run(engine):
+    job = frame_job(CONFIGURATION, LIST)
+    with pytest.raises(InputError, match=r"^the list of a later frame is no list$"):
+        engine.run(replace(job, commands=Later(list(job.commands), fails_at=7)))
+
+
 def test_no_room_for_the_results(engine, tmp_path):
     """The program says so: results that are cut short would look like a machine that hangs."""
     program, _ = engine.build(CONFIGURATION)
-    (tmp_path / "commands").write_bytes(b"")
-    done = subprocess.run([program, tmp_path / "commands", "/dev/full", "0", "-1", "-1", "100"],
+    done = subprocess.run([program, "/dev/full", "0", "-1", "-1", "100"], stdin=subprocess.DEVNULL,
                           capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr == "/dev/full: No space left on device\n"

@@ -21,8 +21,9 @@ from cardcage.testbenches.reports.activity_chart import (
     timeline_chart,
     timeline_picture,
 )
+from cardcage.testbenches.reports.card_groups import card_groups
 from cardcage.testbenches.reports.frame_pictures import DIFFERENT_COLOR, color_difference
-from cardcage.testbenches.reports.frame_report import REPORT_FILES, card_groups
+from cardcage.testbenches.reports.frame_report import REPORT_FILES
 from cardcage.testbenches.reports.work_chart import work_chart
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
@@ -183,11 +184,20 @@ def test_coarser_and_approximate(draw, tmp_path):
 
 
 def test_card_groups():
-    groups = card_groups(MachineConfiguration("MPMMPPM", 8, 8, allow_orphans=True))
-    assert [(group.element, list(group.units)) for group in groups] == [
-        (None, [0]), (0, [1, 2]), (1, []), (2, [3])]
-    assert [group.caption for group in groups] == [
-        "owned by nobody", "owns 1 to 2", "owns none", "owns 3"]
+    def groups(cards):
+        found = card_groups(MachineConfiguration(cards, 8, 8, allow_orphans=True))
+        assert all(len(group.styles) == len(group.cards) for group in found)
+        return [(" ".join(f"{letter}{number}" for letter, number in group.cards), group.caption)
+                for group in found]
+
+    assert groups("MPMMPPM") == [
+        ("M0", "owned by nobody"), ("P0 M1 M2", "owns 1 to 2"), ("P1", "owns none"),
+        ("P2 M3", "owns 3")]
+    assert groups("2x(PMMS)FF") == [
+        ("P0 M0 M1", "owns 0 to 1"), ("S0", "ends node 0"), ("P1 M0 M1", "owns 0 to 1"),
+        ("S1", "ends node 1"), ("F0 F1", "keep the merged picture")]
+    assert groups("PPDMM") == [
+        ("P0", "node 0"), ("P1", "node 1"), ("D0 M0 M1", "of all elements")]
 
 
 @pytest.mark.parametrize("elements", [1, 3, 100])

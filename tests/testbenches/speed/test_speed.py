@@ -24,6 +24,7 @@ from cardcage.testbenches.command_line.command_group import EXIT_DIFFERENT
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
+from cardcage.testbenches.machine_options import MachineOptions
 from cardcage.testbenches.speed.cases import (
     DEFAULT_CASES,
     LEAST_TRIANGLES,
@@ -179,6 +180,17 @@ def test_all_is_what_no_option_restricts(tmp_path):
         assert [row["order"] for row in rows] == list(orders)
 
 
+def test_the_mesh_can_be_looked_at_from_elsewhere(tmp_path):
+    view = ["--view", "90,10", "--zoom", "1.5", "--cull", "--light", "0,0,1"]
+    bench("mesh", *view, "--engine", "model", "--elements", "1", "--json", tmp_path / "b.json")
+    [row] = json.loads((tmp_path / "b.json").read_text())["rows"]
+    assert row["case"] == "mesh --view 90,10 --zoom 1.5 --cull --light 0,0,1"
+    looking = MachineOptions(view=(90.0, 10.0), zoom=1.5, cull=True, light=(0.0, 0.0, 1.0))
+    lists = case_lists(MESH, looking=looking)
+    assert row["triangles"] == lists.once.triangles < case_lists(MESH).once.triangles
+    assert lists.repeated(2).once.triangles == lists.once.triangles  # one pass, whatever is asked
+
+
 def test_set_up_in_hardware_has_its_own_bound(tmp_path):
     """Three clocks a triangle where that is what the fast one takes."""
     bench("one_pixel", "--engine", "model", "--elements", "16", "--setup", "host,fast", "--json",
@@ -194,6 +206,8 @@ def test_set_up_in_hardware_has_its_own_bound(tmp_path):
     (["one_pixel", "--against", __file__], "not a file that cardcage bench --json wrote"),
     (["one_pixel", "--elements", "3"], "power of two"),
     (["one_pixel", "--elements", "x"], "not a valid integer"),
+    (["mesh", "one_pixel", "--view", "0,0", "--engine", "model"],
+     "--view: the triangles of one_pixel are made on the"),
     (["one_pixel", "--plot", "p.png", "--elements", "1", "--engine", "model"], "nothing to draw"),
 ])
 def test_wrong_input(arguments, message, tmp_path, monkeypatch):

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from ..engines.engine import Progress as ProgressFunction
+#: Told how many cycles are simulated, and how many responses there were.
+ProgressFunction = Callable[[int, int], None]
 
 
 @contextmanager

@@ -1,0 +1,1 @@
+"""Figures and tables of the papers, redrawn for our scenes and machines."""

@@ -1,0 +1,1 @@
+"""Which assignment of the triangles to the nodes makes a frame shortest."""

@@ -1,0 +1,1 @@
+"""Pictures that one machine draws one after another."""

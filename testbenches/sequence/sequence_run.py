@@ -1,0 +1,158 @@
+"""The pictures of a sequence on one machine that is booted once, and which scan shows which.
+
+A scan begins every so many clocks, from reset on, and a finished picture takes the place of the
+last one as a scan begins.  So picture i is on the video pins from the scan that follows its end,
+which is r scans after the first that begins after its ``FRAME_START``, r as ``FRAME_SHOWN`` says,
+up to the last one before the first of picture i + 1.  Where the host starts the next picture at
+once that is 1 + r scans, r the next one's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...golden.cycles.frame_clocks import most_frame_clocks
+from ...golden.organisations.organisation_of import organisation_of
+from ...golden.specification import commands
+from ...golden.specification.commands import Opcode, ResponseKind, opcode_of
+from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ..engines.choose_engine import make_engine
+from ..engines.engine import EngineRun, Job, Progress
+from ..frames.compare import Comparison, compare
+from ..frames.conversation import responses_owed
+from ..frames.frame_job import frame_commands
+from ..frames.responses import NOT_READ, Answers, MachineError, Simulation
+from ..frames.simulation import engine_errors
+
+#: Whose depths are read back.
+Depths = Literal["last", "all"]
+
+_READ_DEPTH = commands.command(Opcode.READ_DEPTH)
+_READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
+
+#: Commands of a picture besides its triangles, at most.
+_OTHERS = 8
+
+
+class SequenceCommands(Sequence[int]):
+    """The host's commands for all pictures, each picture's made when they are asked for.
+
+    Counters are read after each picture, depths after the last, or after each.  ``starts`` are the
+    places of the ``FRAME_START`` of those that have been asked for one after another.
+    """
+
+    def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList],
+                 depths: Depths) -> None:
+        self.starts: list[int] = []
+        self._configuration = configuration
+        self._lists = lists
+        self._depths = depths
+
+    def of(self, number: int) -> list[int]:
+        words = frame_commands(self._configuration, self._lists[number])
+        read = self._depths == "all" or number == len(self._lists) - 1
+        return [*words, *[_READ_DEPTH] * read, _READ_COUNTERS]
+
+    def __iter__(self) -> Iterator[int]:
+        self.starts, place = [], 0
+        for number in range(len(self._lists)):
+            words = self.of(number)
+            of_start = next(place for place, word in enumerate(words)
+                            if opcode_of(word) == Opcode.FRAME_START)
+            self.starts.append(place + of_start)
+            place += len(words)
+            yield from words
+
+    def __len__(self) -> int:
+        return sum(len(self.of(number)) for number in range(len(self._lists)))
+
+    def __getitem__(self, place: Any) -> Any:
+        return list(self)[place]
+
+
+@dataclass(frozen=True, eq=False)
+class SequenceFrame:
+    """One picture of a sequence, as it left the machine, judged.
+
+    ``simulation``  its first scan, its depths where they were read back, its work
+    ``comparison``  with the golden picture
+    ``first_scan``  the number of the scan that shows it first, counted from reset
+    ``scans``       on how many it was seen; of the last picture, how many were waited for
+    ``wrong_scans`` those of them that do not show the golden picture
+    ``shown``       the clock in which the machine said that it is shown
+    """
+
+    number: int
+    triangles: int
+    simulation: Simulation
+    comparison: Comparison
+    first_scan: int
+    scans: int
+    wrong_scans: int
+    shown: int
+
+    @property
+    def equal(self) -> bool:
+        return self.comparison.equal and not self.wrong_scans
+
+
+def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[DisplayList],
+                      engine: str, *, triangles: int, depths: Depths = "last",
+                      progress: Progress | None = None, memory_seed: int | None = None,
+                      stall_seed: int | None = None) -> Iterator[SequenceFrame]:
+    """Each picture of ``lists``, drawn one after another and compared on every scan.
+
+    ``triangles`` is how many the longest list has.  Lists are asked for, and prepared, while
+    earlier ones are simulated.  Raises ``InputError`` for a list that is too wide for the machine
+    and an engine that cannot run here, ``MachineError`` where the machine fails, or a scan shows
+    what was never to be seen.
+    """
+    frames = len(lists)
+    often = [commands.command(Opcode.FRAME_END), _READ_COUNTERS] * frames
+    reads = [_READ_DEPTH] * (frames if depths == "all" else 1)
+    words = SequenceCommands(configuration, lists, depths)
+    job = Job(
+        configuration, words,
+        responses_owed(organisation_of(configuration), [*often, *reads]),
+        memory_seed=memory_seed, stall_seed=stall_seed,
+        maximum_cycles=frames * most_frame_clocks(configuration, triangles + _OTHERS))
+    with engine_errors(engine):
+        run = make_engine(engine).run(job, progress)
+    assert run.accepted is not None
+    return _judged(configuration, lists, run, run.accepted[words.starts], depths)
+
+
+def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], run: EngineRun,
+            starts: NDArray[np.int64], depths: Depths) -> Iterator[SequenceFrame]:
+    """``starts``: the clock in which the machine took each picture's start, the first being 1."""
+    answers = Answers(configuration, run)
+    scan_clocks = configuration.cycles_per_scan
+    scans = {(scan.cycle - 1) // scan_clocks: scan.picture for scan in run.scans}
+    shown = [(scan, cycle) for kind, scan, cycle in run.responses
+             if kind == ResponseKind.FRAME_SHOWN]
+    # A scan that begins in the clock of the start counts.
+    first = [-(-(int(start) - 1) // scan_clocks) + repeated
+             for start, (repeated, _) in zip(starts, shown, strict=True)]
+    ends = [*first[1:], max(scans) + 1]
+    if any(scans[number].any() for number in scans if number < first[0]):
+        raise MachineError("something was seen before the first picture was shown")
+    for number, display_list in enumerate(lists):
+        read = depths == "all" or number == len(lists) - 1
+        simulation = answers.frame(number, reading=number,
+                                   read_back=(number if depths == "all" else 0) if read
+                                   else NOT_READ)
+        seen = range(first[number], ends[number])
+        if not seen:
+            raise MachineError(f"picture {number} was never shown: the next one took its scan")
+        simulation = replace(simulation, video=scans[seen[0]])
+        comparison = compare(configuration, display_list, simulation)
+        different = [(scans[scan] != comparison.expected).any(axis=2) & ~comparison.color_orphans
+                     for scan in seen]
+        yield SequenceFrame(number, display_list.triangles, simulation, comparison, seen[0],
+                            len(seen), sum(map(bool, map(np.any, different))), shown[number][1])
