@@ -55,6 +55,10 @@ class NodeControl(OneNode):
         """Clocks from the frame's start until the picture could be scanned."""
         return controller.drawn_cycles
 
+    def scans(self, controller):
+        """Those that began since the start of the frame that is presented."""
+        return controller.scans
+
     # All that is common.
 
     def add_to(self, m, controller):
@@ -87,7 +91,7 @@ class NodeControl(OneNode):
             presenter.merged.eq(self.merged(controller)),
             presenter.cycles.eq(self.merge_cycles(controller)),
             presenter.scan_start.eq(controller.scan_start),
-            presenter.scans.eq(controller.scans),
+            presenter.scans.eq(self.scans(controller)),
             presenter.shown.eq(self.shown(controller)),
         ]
         with m.If(presenter.swap):

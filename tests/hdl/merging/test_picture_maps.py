@@ -41,7 +41,7 @@ class Pictures(Agent):
         if self.started is not None and self.clock > self.started and not ctx.get(dut.listing):
             self.ended()
         ctx.set(dut.front, self.front)
-        self.begun = self.begun or ctx.get(dut.ready) and ctx.get(dut.settled)
+        self.begun = self.begun or (ctx.get(dut.ready) and ctx.get(dut.settled))
         listing = self.started is not None
         self.change = self.delete = None
         if self.begun and pick.random() < self.drawn:
