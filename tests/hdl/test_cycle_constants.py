@@ -30,7 +30,7 @@ from cardcage.hdl.depth_test.two_ports import TwoPortDepthTest
 from cardcage.hdl.direct.crossbar import Crossbar
 from cardcage.hdl.nodes.node_gate import NodeGate
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
-from cardcage.hdl.processing_element.processing_element import SPANS_LATENCY
+from cardcage.hdl.processing_element.drawing_element import SPANS_LATENCY
 from cardcage.hdl.rasteriser.fragment_stepper import FragmentStepper
 from cardcage.hdl.rasteriser.interpolator import Interpolator
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
