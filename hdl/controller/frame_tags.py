@@ -26,9 +26,9 @@ class FrameTags(wiring.Component):
     they are shown.  So no more than two are current: the depths' is that of the colours
     which were last given one.
 
-    Where frame units show what nodes have drawn, these have two colours more.  A frame that is handed
-    over to them gives its tag to their back colours too: they have no word with it, as it was free
-    when the frame started.  Then three are current at most.
+    Where frame units show what nodes have drawn, these have two colours more.  A frame that is
+    handed over to them gives its tag to their back colours too: they have no word with it, as it
+    was free when the frame started.  Then three are current at most.
 
     A tag is *free* when no word has it.  Only free tags are given out, so a frame
     starts on background throughout.  After the boot all are free but the first,
@@ -37,12 +37,12 @@ class FrameTags(wiring.Component):
     (``TagSweep``) leaves no word with a tag that has not been current since the
     pass began: those that were stale then are free when it ends.
 
-    A pass begins when the lower half of the tags is used up, which leaves most of
-    the upper half, a frame each, for the units to find idle clocks for it.  If they
-    find too few a frame start waits: with no free tag, all but two of at least
-    three are stale, or all but three of at least seven, so that a pass goes on or begins,
-    and when it ends some are free.  A frame start waits for done besides, so the units are idle but for the
-    scan, and the wait is no longer than a pass.
+    A pass begins when the lower half of the tags is used up, which leaves most of the upper half, a
+    frame each, for the units to find idle clocks for it.  If they find too few a frame start waits:
+    with no free tag, all but two of at least three are stale, or all but three of at least seven,
+    so that a pass goes on or begins, and when it ends some are free.  A frame start waits for done
+    besides, so the units are idle but for the scan, and for a merge, and the wait is no longer than
+    a pass and that.
 
     Latency: none.  A new tag is current from the clock after ``start`` on.
 

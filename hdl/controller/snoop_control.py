@@ -17,8 +17,8 @@ __all__ = ["SnoopControl"]
 
 class SnoopControl(NodeControl):
     """Hands a drawn frame over when the one before is shown: the nodes' pictures change places, and
-    the frame units' back colour gets the frame's tag and background.  Then the nodes merge, and draw
-    the next frame meanwhile; only read-backs wait.
+    the frame units' back colour gets the frame's tag and background.  Then the nodes merge, and
+    draw the next frame meanwhile; only read-backs wait.
 
     A picture is merged when the frame units have written what the last node sent.
     """
@@ -100,6 +100,9 @@ class SnoopControl(NodeControl):
 
     def merge_cycles(self, controller):
         return self._cycles
+
+    def scans(self, controller):
+        return self._scans
 
     def front(self, controller):
         return controller.frame_pictures.front

@@ -14,9 +14,9 @@ def reciprocal_shift(pitch: int, words: int) -> int:
     """An s for which ⌊a · ⌈2^s / pitch⌉ / 2^s⌋ is ⌊a / pitch⌋ for each address a < words; every
     greater one is, too.
 
-    The product is too large by a · (⌈2^s / pitch⌉ · pitch - 2^s) / pitch, which does no harm while it
-    is less than 2^s / pitch: then no quotient passes a whole number, as the greatest below one is
-    a pitch-th part away.
+    The product is too large by a · (⌈2^s / pitch⌉ · pitch - 2^s) / pitch, which does no harm while
+    it is less than 2^s / pitch: then no quotient passes a whole number, as the greatest below one
+    is a pitch-th part away.
     """
     shift = 0
     while (words - 1) * (-(1 << shift) % pitch) >= 1 << shift:
@@ -88,7 +88,7 @@ class UnitPixel(wiring.Component):
                                       for interlace in interlaces) + 1))
         quotient = Signal.like(self.address)
         # A clock later.
-        unit, address, row = Signal.like(self.unit), Signal.like(self.address), Signal.like(quotient)
+        unit, address, row = (Signal.like(early) for early in (self.unit, self.address, quotient))
         column = Signal.like(address)
         with m.Switch(self.total):
             for interlace in interlaces:

@@ -16,11 +16,11 @@ __all__ = ["ScanPart"]
 class ScanPart:
     """Fetch, read, capture, drive: one clock each.
 
-    The scan's pixel goes into an output register, so that others have the RAM in the meantime; while
-    the scan shows a pixel of this board it goes on to the registers that drive the video bus.
+    The scan's pixel goes into an output register, so that others have the RAM in the meantime;
+    while the scan shows a pixel of this board it goes on to the registers that drive the video bus.
 
-    This is no component, but adds its signals to the module of a board with ``memory``, ``total`` and
-    ``pictures``.
+    This is no component, but adds its signals to the module of a board with ``memory``, ``total``
+    and ``pictures``.
 
     Latency: a scan fetch is on the video bus four clocks later.
 

@@ -18,12 +18,12 @@ class SnoopPart:
     """Notes what is written into the back picture; of the front one it deletes what its node hears
     a pixel for that is as near or nearer, and sends what is left when its node's turn comes.
 
-    The nodes that are heard have lower numbers, so theirs stays of two that are as near.  A word that
-    is not of the front picture's frame was marked by a frame that nobody ended: it is not
+    The nodes that are heard have lower numbers, so theirs stays of two that are as near.  A word
+    that is not of the front picture's frame was marked by a frame that nobody ended: it is not
     sent, whether it is deleted or not.
 
-    The front picture is nobody else's: both read it as the scan reads where nodes are scanned.  Where
-    the unit has one port drawing waits for them.
+    The front picture is nobody else's: both read it as the scan reads where nodes are scanned.
+    Where the unit has one port drawing waits for them.
 
     This is no component, but adds its signals to the module of the ``MemoryUnit``.
 

@@ -9,8 +9,8 @@ from amaranth.lib import data
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import COLOR_BITS
 
-__all__ = ["FRAME_PARTS", "PARTS", "PICTURE_PARTS", "Part", "part_layout", "pixel_layout", "value_bits",
-           "word_parts"]
+__all__ = ["FRAME_PARTS", "PARTS", "PICTURE_PARTS", "Part", "part_layout", "pixel_layout",
+           "value_bits", "word_parts"]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ __all__ = ["PictureMaps"]
 
 
 class PictureMaps(wiring.Component):
-    """A ``DrawnMap`` of either picture.  Words that are drawn are those of the back one; in the front
-    one words are deleted, and it is listed, whatever happens to the other.
+    """A ``DrawnMap`` of either picture.  Words that are drawn are those of the back one; of the
+    front one words are deleted, and it is listed, whatever happens to the other.
 
     Latency and throughput: those of ``DrawnMap``, for both pictures at the same time.
 
@@ -20,7 +20,7 @@ class PictureMaps(wiring.Component):
     Members
     -------
     front: In(1)
-        Which one is in front.  It changes only while both are settled and nothing is listed.
+        Which one is in front; it changes only while nothing is listed.
     ready: Out(1), change: In(1), address: In(range(words)), drawn: In(1)
         Of the back one, as of ``DrawnMap``.
     delete: In(1), delete_address: In(range(words))

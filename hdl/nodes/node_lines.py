@@ -27,8 +27,8 @@ class Node(NamedTuple):
 
 def connect_nodes(m: Module, configuration: MachineConfiguration, controller, generator,
                   nodes: Sequence[Node]) -> None:
-    """Everything between controller, scan generator and ``nodes``, from left to right; of nodes that
-    merge on a bus not what is for merging or showing the picture."""
+    """Everything between controller, scan generator and ``nodes``, from left to right; where they
+    merge on a bus, but for what merges and shows their pictures."""
     cards = [node.merge_card for node in nodes]
     fixed = wires(m, "total_wires")
     fixed.d.comb += [controller.total.eq(cards[0].left.id),

@@ -141,7 +141,8 @@ class ProcessingElementControl(wiring.Component):
             ResponseKind.FRAGMENTS: (state.ongoing("REPORT_FRAGMENTS"), self.fragments),
             ResponseKind.BUSY: (state.ongoing("REPORT_BUSY"), self.busy_cycles),
         }
-        kinds = [Mux(now, kind, 0) for kind, (now, _) in reports.items()]
+        kind_bits = max(reports).bit_length()  # other boards say greater ones
+        kinds = [Mux(now, C(kind, kind_bits), 0) for kind, (now, _) in reports.items()]
         values = [Mux(now, value, 0) for now, value in reports.values()]
         m.d.comb += [
             response.kind.eq(reduce(or_, kinds)),

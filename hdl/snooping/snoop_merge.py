@@ -1,4 +1,4 @@
-"""The merge card S: nodes send in turn what they have drawn, and delete what they hear is hidden."""
+"""The merge card S: nodes send in turn what they have drawn, and delete what is hidden."""
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
@@ -22,8 +22,8 @@ class SnoopMerge(MergeCard):
 
     Nothing waits on the bus: all listen as fast as any sends.
 
-    Latency: ``latency`` clocks from a pixel to the memory units of other nodes.  Throughput: a pixel a
-    clock.
+    Latency: ``latency`` clocks from a pixel to the memory units of other nodes.  Throughput: a
+    pixel a clock.
 
     Members
     -------

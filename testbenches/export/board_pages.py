@@ -24,6 +24,9 @@ from ...hdl.machine import BOARDS
 from ..support.atomic_output import atomic_file
 from .port_meanings import ports_in_parts, stated_timing
 
+#: Boards, and the processing element that takes the other one's place before a direct merge.
+PAGES = (*BOARDS, "direct_element")
+
 #: The pages show this machine's numbers of bits.
 PRESET = "small"
 
@@ -100,7 +103,7 @@ def _markdown(text: str) -> str:
 def main(folder: Path) -> None:
     """Write all pages into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name in BOARDS:
+    for name in PAGES:
         with atomic_file(folder / f"{name}.md", "docs") as file:
             file.write_text(board_page(name), encoding="utf-8")
 

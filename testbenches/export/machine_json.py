@@ -29,6 +29,13 @@ _TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"
                    2: ("two_port_depth_test", "two_port_memory")}
 
 
+_COUNTERS_OF_NODES = ("READ_COUNTERS: after FRAGMENTS and BUSY of a node's processing elements "
+                      "SENT, the pixels that its merge card sent for the picture")
+_COUNTERS_OF_UNITS = ("READ_COUNTERS: after FRAGMENTS and BUSY of all processing elements TAKEN "
+                      "and FOLLOWED of each memory unit: fragments that it took, and those of "
+                      "them whose pixel a fragment just ahead of them was to change")
+
+
 def _inspected(component: wiring.Component, facts: Callable[[wiring.Component], Any]) -> Any:
     """``facts`` of a component that is only looked at; Amaranth wants each elaborated once."""
     found = facts(component)
@@ -109,8 +116,10 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
         number("address", c.address_bits, "word of a memory unit"),
         *([] if c.merge is None else
           [number("node", c.node_bits, "number of a node, or how many there are")]),
-        *([] if not c.order_bits else
-          [number("round", c.order_bits, "round in which a node drew a pixel, beside its depth")]),
+        *([] if not c.round_bits else
+          [number("round", c.round_bits, "round in which a node drew a pixel, beside its depth")]),
+        *([] if not (c.merges_directly and c.order_bits) else
+          [number("drawn_by", c.node_order_bits, "node that drew a pixel, below its round")]),
     ]
 
 
@@ -123,14 +132,15 @@ def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
         "organisation": organisation.name,
         "nodes": organisation.nodes,
         "memory_units_of_each": list(organisation.node_units),
+        **({"frame_units": configuration.frame_units} if configuration.snoops else {}),
         "nearer": "least depth, of equal depths the least round, of equal rounds the lowest node",
         "order_bits": configuration.order_bits,
         "packet": configuration.packet,
         "list_words": configuration.list_words,
         "pixel_bits": sent_pixel_bits(configuration),
         "steps": organisation.merge_steps,
-        "counters": "READ_COUNTERS: after FRAGMENTS and BUSY of a node's processing elements SENT, "
-                    "the pixels that its merge card sent for the picture",
+        **({"queue": configuration.queue} if configuration.merges_directly else {}),
+        "counters": _COUNTERS_OF_UNITS if configuration.merges_directly else _COUNTERS_OF_NODES,
     }
 
 

@@ -21,7 +21,7 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
 
     lonely = set(COMPONENTS)
     for cards, ports in (("PMMPMM", 1), ("PMMPMM", 2), ("PMMC", 1), ("PMMT", 1),
-                         ("PPDMM", 2)):
+                         ("PMMSF", 1), ("PPDMM", 2)):
         configuration = small_machine(cards, 9, 7, shading="gouraud", setup="hardware",
                                       memory_ports=ports)
         with monkeypatch.context() as patch:

@@ -34,6 +34,10 @@ MODELS = {
         "memory_ports": 2}),
     "chain of two of two elements, two ports": ("2x(PMMPMMC)", (13, 7), {
         "list_words": 40, "memory_ports": 2}),
+    "bus of four, vertices": ("4x(PMMS)FFFF", (33, 17), {
+        "setup": "hardware", "setup_interval": 40, "shading": "flat", "list_words": 40}),
+    "bus of three, two ports": ("3x(PMS)FF", (13, 7), {"list_words": 40, "memory_ports": 2}),
+    "bus of two of two elements": ("2x(PMMPMMS)FF", (13, 7), {"list_words": 40}),
 }
 
 

@@ -125,6 +125,9 @@ SQUARES = [("PM", 4, 16), ("PMM", 2, 16), ("PMMMM", 2, 16), ("PMM", 8, 8), ("PMM
 #: The same, in no squares but skewed.
 SKEWED = [("PM", None, units) for units in UNITS]
 
+#: Diagonally.
+DIAGONAL = [("PPDM", 1, units) for units in UNITS]
+
 
 def squares(cards, block, units, picture):
     """The machine, and the interlace that it settles on with so many units; skewed where there
@@ -135,12 +138,13 @@ def squares(cards, block, units, picture):
                                   **shape)
     return configuration, interlace_for(
         width, height, words=words, units=units, square_bits=configuration.square_bits,
-        share_bits=configuration.share_bits, skew=configuration.skew)
+        share_bits=configuration.share_bits, skew=configuration.skew,
+        diagonal=configuration.merges_directly)
 
 
 @pytest.mark.parametrize("picture", PICTURES, ids=str)
-@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + SKEWED)
-def test_pixels_in_squares_and_skewed(cards, block, units, picture):
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + SKEWED + DIAGONAL)
+def test_pixels_in_squares_skewed_and_diagonal(cards, block, units, picture):
     """Address and scan, pixel by pixel: each lies in the word that is fetched before it is shown,
     and no unit reads the scan more often than ``scan_reads`` says."""
     configuration, interlace = squares(cards, block, units, picture)
@@ -264,5 +268,19 @@ def test_equal_shares_are_one_lattice():
                     ctx.set(dut.first, first)
                     ctx.set(dut.end, first + share)
                     assert ctx.get(dut.after) == first + share
+
+    evaluate(dut, steps)
+
+
+def test_diagonally_the_whole_picture_is_one_block():
+    """Of all units, however many there are."""
+    dut = LatticeBlock(configuration=small_machine("PPDM", 16, 16, maximum_units=16))
+
+    def steps(ctx):
+        for units in UNITS:
+            for line in (dut.total, dut.end):
+                ctx.set(line, units)
+            assert ctx.get(dut.after) == units
+            assert ctx.get(dut.lattice.as_value()) == 0
 
     evaluate(dut, steps)

@@ -12,6 +12,9 @@ from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.commands import CHANNELS
 from cardcage.hdl.rasteriser.interpolator import Interpolator
 
+#: The number of the processing element, where it is a node by itself.
+NODE = 2
+
 
 def stored(configuration, carried, bits, limit):
     """What is stored of a carried word, and on which side it was saturated."""
@@ -31,8 +34,8 @@ class Triangle:
         if configuration.shading == "gouraud":
             self.widths |= dict.fromkeys(CHANNELS, (configuration.channel_plane_bits, 8))
         self.planes = {name: source.getrandbits(8) for name in CHANNELS}
-        if configuration.order_bits:
-            self.planes["round"] = source.getrandbits(configuration.order_bits)
+        if configuration.round_bits:
+            self.planes["round"] = source.getrandbits(configuration.round_bits)
         at = source.randrange(configuration.width), source.randrange(configuration.height)
         for name, (bits, value_bits) in self.widths.items():
             edges = ((1 << bits) - 1, 1 << bits - 1, 0)
@@ -63,7 +66,10 @@ class Triangle:
         interlace = self.configuration.interlace
         x, y = pixel["x"], pixel["y"]
         color = sum(words[name] << 8 * place for place, name in enumerate(CHANNELS))
-        rank = words["depth"] << self.configuration.order_bits | self.planes.get("round", 0)
+        order = self.planes.get("round", 0)
+        if self.configuration.merges_directly and self.configuration.order_bits:
+            order = order << self.configuration.node_order_bits | NODE
+        rank = words["depth"] << self.configuration.order_bits | order
         return (interlace.unit(x, y), interlace.address(x, y), rank, color), sides
 
 
@@ -98,6 +104,9 @@ def configurations():
         "sixteen units": small_machine("PM 15xM", 16, 4),
         "nodes": small_machine("3x(PMMC)", 8, 8, order_bits=3),
         "nodes without an order": small_machine("2x(PMT)", 8, 8, order_bits=0, shading="gouraud"),
+        "directly": small_machine("PPPDMM", 8, 8, order_bits=5),
+        "directly, a round": small_machine("PPPDMM", 8, 8, order_bits=2, shading="gouraud"),
+        "directly, without an order": small_machine("PPPDMM", 8, 8, order_bits=0),
     }
 
 
@@ -114,8 +123,12 @@ def run(configuration, pixels, pause):
         holds.append((entered - len(sink.items), ctx.get(dut.busy)))
 
     # Counted before this clock's transfers are: what it holds now.
-    simulate(dut, Drive(lambda ctx, clock: ctx.set(dut.total, configuration.units)),
-             Watch(count), source, planes, sink, after=3)
+    def lines(ctx, clock):
+        ctx.set(dut.total, configuration.units)
+        if configuration.merges_directly and configuration.order_bits:
+            ctx.set(dut.node, NODE)
+
+    simulate(dut, Drive(lines), Watch(count), source, planes, sink, after=3)
     assert [(item.unit, item.address, item.depth, item.color) for item in sink.items] == [
         fragment for fragment, _ in drawn]
     assert all(busy == (held > 0) for held, busy in holds)
