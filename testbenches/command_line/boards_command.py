@@ -17,9 +17,9 @@ from .command_options import Several, Size
 
 #: What can be measured (``fpga.boards``, which loads Amaranth and so is not asked here).
 BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports",
-               "unit-of-chain", "unit-of-tree", "chain-merge", "tree-merge", "element-of-direct",
-               "unit-of-direct", "direct-merge", "direct-merge-2", "direct-merge-element",
-               "setup-fast", "setup-small")
+               "unit-of-chain", "unit-of-tree", "unit-of-snoop", "chain-merge", "tree-merge",
+               "snoop-merge", "frame-unit", "element-of-direct", "unit-of-direct", "direct-merge",
+               "direct-merge-2", "direct-merge-element", "setup-fast", "setup-small")
 
 
 @click.command(name="boards")

@@ -20,8 +20,8 @@ from .sent_in_rtl import POINT_NODES, POINT_SCENE, POINT_SIZE, Point, PointJob
 #: The paper's screens have 0.2 to 1.6 million pixels.
 DEFAULT_SIZE = (512, 512)
 
-#: A cage for each number of nodes whose traffic is measured; None where there is none to simulate.
-POINT_CARDS: str | None = None
+#: The cage whose traffic is measured, on so many nodes.
+POINT_CARDS = "{}x(PMMS)FF"
 
 #: Told before each step what is begun.
 Step = Callable[[str], None]
@@ -50,11 +50,10 @@ class FiguresOptions:
         if self.simulate:
             found += [MergeJob(cage, scene, self.size, self.engine) for scene in scenes
                       if scene.name in MERGE_SCENES for cage in CAGES]
-            if POINT_CARDS is not None:
-                found += [PointJob(POINT_CARDS.format(nodes), name, packet, POINT_SCENE,
-                                   POINT_SIZE, self.engine)
-                          for nodes in POINT_NODES for name, packet in PACKETS.items()]
-                found.append(TrafficJob(POINT_SCENE, POINT_SIZE))
+            found += [PointJob(POINT_CARDS.format(nodes), name, packet, POINT_SCENE, POINT_SIZE,
+                               self.engine)
+                      for nodes in POINT_NODES for name, packet in PACKETS.items()]
+            found.append(TrafficJob(POINT_SCENE, POINT_SIZE))
         found += [TimesJob(scene, self.size) for scene in scenes if scene.name in MAP_SCENES]
         return found + [TrafficJob(scene, self.size) for scene in scenes]
 

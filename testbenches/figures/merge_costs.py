@@ -13,8 +13,10 @@ from typing import Any
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.card_order import (
     CHAIN_MERGE,
+    FRAME_UNIT,
     MEMORY_UNIT,
     PROCESSING_ELEMENT,
+    SNOOP_MERGE,
     TREE_MERGE,
     parse_cards,
 )
@@ -67,6 +69,8 @@ CAGES = (
     MergeCage(CHAIN_MERGE, f"{NODES}x(PMMC)",
               _boards("unit-of-chain", CHAIN_MERGE, "chain-merge")),
     MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", _boards("unit-of-tree", TREE_MERGE, "tree-merge")),
+    MergeCage(SNOOP_MERGE, f"{NODES}x(PMMS)FF",
+              _boards("unit-of-snoop", SNOOP_MERGE, "snoop-merge") | {FRAME_UNIT: "frame-unit"}),
 )
 
 

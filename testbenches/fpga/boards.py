@@ -9,9 +9,15 @@ from typing import Any
 from amaranth.lib import wiring
 
 from ...golden.planning.on_screen_widths import on_screen_widths
-from ...golden.specification.card_order import CHAIN_MERGE, TREE_MERGE
+from ...golden.specification.card_order import (
+    CHAIN_MERGE,
+    FRAME_UNIT,
+    SNOOP_MERGE,
+    TREE_MERGE,
+)
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.memory_unit.memory_unit import MemoryUnit
+from ...hdl.snooping.frame_unit import FrameUnit
 from ..machine_options import SETUPS
 from ..speed.cases import DEPTH_BITS, SUB_BITS
 from .domain import Domain
@@ -30,6 +36,12 @@ def memory_unit(configuration: MachineConfiguration) -> wiring.Component:
     """A memory unit, its RAM outside."""
     unit = MemoryUnit(configuration=configuration)
     return OutsideRam(component=unit, storages=unit.memory.storages)
+
+
+def frame_unit(configuration: MachineConfiguration) -> wiring.Component:
+    """A frame unit, its RAM outside."""
+    unit = FrameUnit(configuration=configuration)
+    return OutsideRam(component=unit, storages=unit.storages)
 
 
 @dataclass(frozen=True)
@@ -60,8 +72,9 @@ class Board:
                                    "shading": "flat", "memory_ports": 2} | dict(self.changes)
         if self.merge or self.cage:
             machine["packet"] = "contiguous"  # no rounds beside the depths
+        frame_units = 2 * FRAME_UNIT if self.merge == SNOOP_MERGE else ""
         configuration = MachineConfiguration(
-            cards=self.cage or (f"2x({cards}{self.merge})" if self.merge else cards),
+            cards=self.cage or (f"2x({cards}{self.merge}){frame_units}" if self.merge else cards),
             width=width, height=height, **machine, **on_screen_widths(width, height, SUB_BITS))
         return Part(configuration, self.name, self.build, self.mapping)
 
@@ -81,8 +94,12 @@ BOARDS = {
                            merge=CHAIN_MERGE),
     "unit-of-tree": Board("memory unit, 2 ports, sends", "memory_unit", memory_unit,
                           merge=TREE_MERGE),
+    "unit-of-snoop": Board("memory unit, 2 ports, two pictures, sends", "memory_unit", memory_unit,
+                           merge=SNOOP_MERGE),
     "chain-merge": Board("chain merge", "chain_merge", merge=CHAIN_MERGE),
     "tree-merge": Board("tree merge", "tree_merge", merge=TREE_MERGE),
+    "snoop-merge": Board("snoop merge", "snoop_merge", merge=SNOOP_MERGE),
+    "frame-unit": Board("frame unit", "frame_unit", frame_unit, merge=SNOOP_MERGE),
     "element-of-direct": Board("direct element, flat, 4x4", "direct_element", cage=DIRECT),
     "unit-of-direct": Board("memory unit, 2 ports, own depth test, 4x4", "memory_unit",
                             memory_unit, cage=DIRECT),

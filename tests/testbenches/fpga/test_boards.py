@@ -117,9 +117,10 @@ def test_machines_are_exact_for_every_triangle(placed):
     assert run("--seeds", 1).exit_code == 0
     machines = {name: part.configuration for name, part in zip(BOARDS, placed, strict=True)}
     for name, machine in machines.items():
-        merge = {"chain": "C", "tree": "T"}.get(name.removeprefix("unit-of-").split("-")[0])
+        merge = {"chain": "C", "tree": "T", "snoop": "S", "frame": "S"}.get(
+            name.removeprefix("unit-of-").split("-")[0])
         cards = ("PPPPDMMMM" if "direct" in name else
-                 "PMM" if merge is None else f"PMM{merge}" * 2)
+                 "PMM" if merge is None else f"PMM{merge}" * 2 + "FF" * (merge == "S"))
         assert (machine.width, machine.height, machine.cards) == (512, 512, cards)
         assert machine.order_bits == machine.node_order_bits
         assert (machine.sub_bits, machine.depth_bits, machine.fifo_depth) == (8, 24, 16)
