@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from ..support.text_table import TextTable
 from .assignments.assignment import ASSIGNMENTS, ROUND_ROBIN
@@ -100,16 +101,18 @@ _COSTS: dict[str, Callable[[MergeCosts], str]] = {
     "bits sent": lambda cost: f"{cost.facts['traffic']['bits']:,}",
     "bits on the busiest link": lambda cost: f"{cost.facts['traffic']['busiest_link']['bits']:,}",
     "memory, bits": lambda cost: f"{cost.facts['memory']['bits']:,}",
-    "LUTs of a merge card": lambda cost: ON_REQUEST if cost.board is None
-    else f"{cost.board.luts:,}",
-    "MHz of a merge card": lambda cost: ON_REQUEST if cost.board is None
-    else f"{cost.board.mhz:.0f}",
-    "LUTs of the cage": lambda cost: ON_REQUEST if cost.cage_luts is None
-    else f"{cost.cage_luts:,}",
+    "LUTs of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.luts:,}"),
+    "MHz of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.mhz:.0f}"),
+    "LUTs of the cage": lambda cost: _placed(cost, cost.cage_luts and f"{cost.cage_luts:,}"),
     "fragments a clock": lambda cost: f"{cost.fragments_per_clock:.3f}",
-    "fragments a clock for 1,000 LUTs": lambda cost: ON_REQUEST if cost.per_lut is None
-    else f"{1000 * cost.per_lut:.4f}",
+    "fragments a clock for 1,000 LUTs": lambda cost: _placed(
+        cost, cost.per_lut and f"{1000 * cost.per_lut:.4f}"),
 }
+
+
+def _placed(cost: MergeCosts, words: Any) -> str:
+    """What was measured of boards that were placed."""
+    return str(words or (ON_REQUEST if cost.cage.boards else NOTHING))
 
 
 def _latency(cost: MergeCosts, until: str) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.card_order import (
     CHAIN_MERGE,
+    DIRECT_MERGE,
     FRAME_UNIT,
     MEMORY_UNIT,
     PROCESSING_ELEMENT,
@@ -48,7 +49,11 @@ class BoardFigures:
 
 @dataclass(frozen=True)
 class MergeCage:
-    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``."""
+    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``.
+
+    There are none of a direct merge, whose crossbar is too large for so many elements to be placed
+    within reason; ``cardcage boards`` has a smaller one.
+    """
 
     merge: str
     cards: str
@@ -56,7 +61,7 @@ class MergeCage:
 
     def luts(self, boards: Mapping[str, BoardFigures]) -> int | None:
         """Of all cards; None where some of them were not measured."""
-        if not all(name in boards for name in self.boards.values()):
+        if not self.boards or not all(name in boards for name in self.boards.values()):
             return None
         return sum(boards[self.boards[card]].luts for card in parse_cards(self.cards))
 
@@ -71,6 +76,7 @@ CAGES = (
     MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", _boards("unit-of-tree", TREE_MERGE, "tree-merge")),
     MergeCage(SNOOP_MERGE, f"{NODES}x(PMMS)FF",
               _boards("unit-of-snoop", SNOOP_MERGE, "snoop-merge") | {FRAME_UNIT: "frame-unit"}),
+    MergeCage(DIRECT_MERGE, f"{NODES}xP D {NODES}xM", {}),
 )
 
 
@@ -150,5 +156,5 @@ def merge_costs(jobs: Sequence[MergeJob], facts: Sequence[dict[str, Any]],
                 boards: Mapping[str, BoardFigures]) -> list[MergeCosts]:
     """What the jobs found, with their boards."""
     return [MergeCosts(job.cage, job.scene.name, found,
-                       boards.get(job.cage.boards[job.cage.merge]), job.cage.luts(boards))
+                       boards.get(job.cage.boards.get(job.cage.merge, "")), job.cage.luts(boards))
             for job, found in zip(jobs, facts, strict=True)]
