@@ -10,7 +10,8 @@ triangles ahead, so each few triangles take the longer of
 
 and the frame takes as long as its busiest processing element does for all of them, or
 as the broadcast, a clock for each triangle.  Where nodes share the triangles each is a cage by
-itself; the broadcast is for all of them, unless each has its share in a list.
+itself; the broadcast is for all of them, unless each has its share in a list.  Elements without
+pixels of their own draw a fragment a clock, and the ports are those of the busiest unit.
 Where it errs: how often a fragment is visible is the average for a random order of
 drawing; and many processing elements wait for each other's full queues, so that a
 fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
@@ -24,6 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..merging.direct import direct_traffic
 from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..reference.exact import depth_complexity
@@ -47,6 +49,9 @@ LATENCY_CLOCKS = PIPELINE.queue + PIPELINE.latency + PIPELINE.finish
 #: About so many triangles have rows that were found ahead.
 TRIANGLES_AHEAD = 4
 
+#: About so many times longer takes an element whose fragments all wait in one queue.
+WAIT_IN_ONE_QUEUE = 1.2
+
 #: ``cards_for_cycles`` tries up to so many processing elements, each with so many units.
 MOST_ELEMENTS = 256
 UNITS_EACH = (1, 2, 4)
@@ -59,15 +64,18 @@ class CycleEstimate:
     ``draw``       float64, per processing element
     ``broadcast``  for all triangles
     ``fragments``  int64, per processing element; exact
+    ``units``      for the busiest memory unit, where processing elements share it
     """
 
     draw: Float64
     broadcast: int
     fragments: Int64
+    units: float = 0.0
 
     @property
     def total(self) -> int:
-        return round(max(float(self.draw.max(initial=0)), self.broadcast) + LATENCY_CLOCKS)
+        return round(max(float(self.draw.max(initial=0)), self.broadcast, self.units)
+                     + LATENCY_CLOCKS)
 
 
 def estimate_cycles(configuration: MachineConfiguration, display_list: DisplayList,
@@ -80,7 +88,20 @@ def estimate_cycles(configuration: MachineConfiguration, display_list: DisplayLi
     broadcast = [node.broadcast for node in nodes]
     return CycleEstimate(np.concatenate([node.draw for node in nodes]),
                          max(broadcast) if retained else sum(broadcast),
-                         np.concatenate([node.fragments for node in nodes]))
+                         np.concatenate([node.fragments for node in nodes]),
+                         _of_shared_units(configuration, display_list))
+
+
+def _of_shared_units(configuration: MachineConfiguration, display_list: DisplayList) -> float:
+    """Clocks of the busiest unit that takes fragments of all elements."""
+    if not configuration.merges_directly:
+        return 0.0
+    organisation = organisation_of(configuration)
+    clocks = float(direct_traffic(organisation, display_list).taken.sum(axis=0).max())
+    if configuration.memory_ports == 1:
+        complexity = depth_complexity(display_list, **organisation.resolution.shifts)
+        clocks *= (1 + visible_share(complexity)) / (1 - scan_share(configuration))
+    return clocks
 
 
 def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
@@ -95,7 +116,7 @@ def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
     alternating = np.array([block.alternating for block in blocks])
     elements = len(organisation.domains)
     written, slots = 0.0, 0.0
-    if configuration.memory_ports == 1:
+    if configuration.memory_ports == 1 and not configuration.merges_directly:
         written = visible_share(depth_complexity(display_list, **shifts))
         slots = scan_share(configuration, node)
     draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
@@ -108,11 +129,18 @@ def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
                          np.maximum(spans.length - FRAGMENTS_WAITING, 0))
         waits[alternating[spans.block]] = 0
         clocks = (spans.length + written * waits) / (1 - slots)
-        drawn = np.bincount(places, clocks, count * elements)
+        drawn = _wait(configuration) * np.bincount(places, clocks, count * elements)
         _, walked, _ = walks(blocks, elements, spans, PIPELINE)
         draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
         fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
     return CycleEstimate(draw, len(triangles), fragments)
+
+
+def _wait(configuration: MachineConfiguration) -> float:
+    """How many times longer an element draws because fragments wait for others."""
+    one_queue = configuration.merges_directly and configuration.queue == "element"
+    meet = min(configuration.nodes, configuration.units) > 1
+    return WAIT_IN_ONE_QUEUE if one_queue and meet else 1.0
 
 
 def _together(clocks: NDArray[Any]) -> NDArray[Any]:

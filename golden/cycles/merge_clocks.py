@@ -8,7 +8,8 @@ the sender to the receiver, and as what goes before the first pixel and after th
 With two ports a pixel takes a clock.  Where units have one port it is read and, if what comes is
 nearer, written, at ports that in node 0 the scan has now and then (``received_pixels``).
 
-A chain merges while it is scanned, which takes no clock of a frame.
+A chain merges while it is scanned, which takes no clock of a frame; nodes on a bus have clocks of
+their own (``snoop_clocks``).
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from itertools import groupby
 import numpy as np
 
 from ..merging.cage import cage_pictures
+from ..merging.snoop import merge_snoop
 from ..merging.tree import TreeSend, tree_sends
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from .received_pixels import received_clocks
+from .snoop_clocks import snoop_clocks
 
 #: From the end of drawing to the first step.
 MERGE_CLOCKS = 1
@@ -46,8 +49,10 @@ def predict_merge(configuration: MachineConfiguration, display_list: DisplayList
     ``merge_clocks``."""
     if not organisation_of(configuration).merges_after_drawing:
         return 0
-    sends = tree_sends(cage_pictures(configuration, display_list))
-    return sum(merge_clocks(configuration, sends, begin))
+    pictures = cage_pictures(configuration, display_list)
+    if configuration.snoops:
+        return sum(snoop_clocks(merge_snoop(pictures)[1]))
+    return sum(merge_clocks(configuration, tree_sends(pictures), begin))
 
 
 def merge_clocks(configuration: MachineConfiguration, sends: Iterable[TreeSend],

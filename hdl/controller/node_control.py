@@ -55,6 +55,10 @@ class NodeControl(OneNode):
         """Clocks from the frame's start until the picture could be scanned."""
         return controller.drawn_cycles
 
+    def scans(self, controller):
+        """Those that began since the start of the frame that is presented."""
+        return controller.scans
+
     # All that is common.
 
     def add_to(self, m, controller):
@@ -87,25 +91,43 @@ class NodeControl(OneNode):
             presenter.merged.eq(self.merged(controller)),
             presenter.cycles.eq(self.merge_cycles(controller)),
             presenter.scan_start.eq(controller.scan_start),
-            presenter.scans.eq(controller.scans),
+            presenter.scans.eq(self.scans(controller)),
             presenter.shown.eq(self.shown(controller)),
         ]
         with m.If(presenter.swap):
             m.d.sync += self.front(controller).eq(~self.front(controller))
 
     def _take_turns(self, m, controller):
-        """Two give responses: what one has begun to offer it offers until that is taken."""
+        """Two give responses."""
         own, presented, responses = self._answers, self.presenter.responses, controller.responses
-        begun = Signal(name="answer_begun")  # by what takes commands, and not by the presenter
-        turn = Signal(name="presenter_turn")
+        turn = self._presenter_turn(m)
         m.d.comb += [
-            turn.eq(presented.valid & ~begun),
             responses.valid.eq(own.valid | presented.valid),
-            responses.payload.eq(Mux(turn, presented.payload, own.payload)),
             own.ready.eq(responses.ready & ~turn),
             presented.ready.eq(responses.ready & turn),
         ]
+        if self.answers_meet:
+            m.d.comb += responses.payload.eq(Mux(turn, presented.payload, own.payload))
+        else:  # whoever has nothing to say says 0
+            m.d.comb += Value.cast(responses.payload).eq(
+                Value.cast(own.payload) | Value.cast(presented.payload))
+
+    @property
+    def answers_meet(self):
+        """Something else than what the presenter says may be answered while a picture is on its
+        way to the screen."""
+        return self.configuration.snoops
+
+    def _presenter_turn(self, m):
+        """What one has begun to offer it offers until that is taken."""
+        if not self.answers_meet:
+            return self.presenter.responses.valid
+        own = self._answers
+        begun = Signal(name="answer_begun")  # by what takes commands, and not by the presenter
+        turn = Signal(name="presenter_turn")
+        m.d.comb += turn.eq(self.presenter.responses.valid & ~begun)
         m.d.sync += begun.eq(own.valid & ~own.ready & ~turn)
+        return turn
 
     def answers(self, controller):
         return self._answers

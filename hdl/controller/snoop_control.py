@@ -101,6 +101,9 @@ class SnoopControl(NodeControl):
     def merge_cycles(self, controller):
         return self._cycles
 
+    def scans(self, controller):
+        return self._scans
+
     def front(self, controller):
         return controller.frame_pictures.front
 

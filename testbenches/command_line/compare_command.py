@@ -20,6 +20,7 @@ from ..comparison.comparison_facts import comparison_facts
 from ..comparison.comparison_table import comparison_table, comparison_text
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE
+from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT, warn
 from .command_options import Several, machine_options_of_cages
@@ -31,6 +32,13 @@ from .command_options import Several, machine_options_of_cages
 @click.option("--nodes", type=Several(click.IntRange(1, MAXIMUM_NODES), "N,…"),
               help="Also each kind of cage with so many nodes: speed-up of the scene, and of one "
               "that grows with the machine.")
+@click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
+              help="Draw N views of a mesh that turns, and tell how far the figures spread.")
+@click.option("--turn", type=float, metavar="DEGREES",
+              help=f"With --frames: from one view to the next.  [default: {DEFAULT_TURN}]")
+@click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
+              help="A view for each line, which has azimuth,elevation or azimuth,elevation,zoom; "
+              "the first line names them.")
 @click.option("--simulate", type=click.IntRange(0, MAXIMUM_NODES), default=DEFAULT_SIMULATE,
               show_default=True, metavar="N", help="With --nodes: simulate cages of up to N nodes; "
               "of all of them the cycle model is asked.")
@@ -63,6 +71,7 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
       cardcage compare mesh.obj --size 128x128 --memory-ports 2
       cardcage compare teapot --cards '8x(PMM)' --cards '8x(PMMT)' --packet contiguous
       cardcage compare teapot --cards '4x(PMMPMMC)' --cards '2x(PMMPMMPMMPMMC)' --immediate
+      cardcage compare teapot --frames 8 --turn 45
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16,32,64 --simulate 0
       cardcage compare random:n=40,size=12,seed=7 --size 32x32 --cells --json

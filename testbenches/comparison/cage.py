@@ -22,8 +22,10 @@ from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
+from ..sequence.scene_frames import SceneFrames
 from .cage_memory import Memory, cells_of, memories_of
 from .frame_sequence import Clocks, FrameSequence, Latency
+from .view_spread import ViewFigures, draw_views
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,7 @@ class CageRun:
     ``cells``        None where they were not counted
     ``differences``  a line each: what is not as the golden model has it
     ``warnings``     a line each
+    ``views``        of all views that were asked for; all else is of the first one
     """
 
     cage: Cage
@@ -100,6 +103,7 @@ class CageRun:
     cells: dict[str, int] | None
     differences: Sequence[str]
     warnings: Sequence[str]
+    views: Sequence[ViewFigures] = ()
 
     @property
     def fragments(self) -> int:
@@ -117,7 +121,8 @@ class CageRun:
 
 @dataclass(frozen=True)
 class CageJob:
-    """A cage that is to draw ``scene``; ``memories``: list them, ``cells``: count them, too."""
+    """A cage that is to draw ``scene``; ``memories``: list them, ``cells``: count them, too.
+    ``views``: the scene from all sides that were asked for, the first of which ``scene`` is."""
 
     cage: Cage
     scene: SceneDisplayList
@@ -126,6 +131,7 @@ class CageJob:
     random_memory: int | None = None
     memories: bool = True
     cells: bool = False
+    views: SceneFrames | None = None
 
     def run(self) -> CageRun | Refused:
         try:
@@ -137,13 +143,15 @@ class CageJob:
 
     def _run(self) -> CageRun:
         display_list = self.scene.display_list
-        configuration = plan(display_list,
-                             **self.cage.options(self.options).for_plan()).configuration
+        lists = display_list if self.views is None else self.views
+        configuration = plan(lists, **self.cage.options(self.options).for_plan()).configuration
         frames = FrameSequence(configuration, display_list, self.engine, self.random_memory)
         simulation = frames.simulation
         comparison = compare(configuration, display_list, simulation)
         golden = merge_cage(configuration, display_list)[1]
         nodes = _nodes(configuration, display_list, simulation, golden)
+        views = [] if self.views is None else draw_views(configuration, self.views, self.engine,
+                                                         self.random_memory)
         return CageRun(
             self.cage, configuration, simulation, comparison, frames.clocks,
             frames.latency(comparison.golden), nodes,
@@ -152,8 +160,8 @@ class CageJob:
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *_count_differences(nodes),
-             *_unit_differences(simulation, golden)],
-            [*resolution_warnings(configuration), *simulation.notes])
+             *_unit_differences(simulation, golden), *_view_differences(views)],
+            [*resolution_warnings(configuration), *simulation.notes], views)
 
 
 def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
@@ -182,6 +190,11 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
         found.append(f"{wrong} of {len(scans)} scans, of frames of one scene, show another picture "
                      "than the last")
     return found
+
+
+def _view_differences(views: Sequence[ViewFigures]) -> list[str]:
+    return [f"view {number} differs from its golden picture"
+            for number, view in enumerate(views) if not view.equal]
 
 
 def _count_differences(nodes: Sequence[NodeFigures]) -> list[str]:

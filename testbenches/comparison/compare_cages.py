@@ -19,6 +19,7 @@ from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
 from ..render import DEFAULT_SCENE
+from ..sequence.scene_frames import SceneFrames
 from ..support.atomic_output import atomic_folder, output_errors
 from ..support.processes import cores, in_processes
 from .cage import Cage, CageJob, CageRun, Refused
@@ -46,6 +47,7 @@ class CompareOptions:
     ``engine``         a name of ``engines.ENGINES`` or ``auto``
     ``random_memory``  seed of the memories' contents before boot; None: zero
     ``processes``      at the same time; as many as there are cores by default
+    ``frames``, ``turn``, ``path``  several views of a mesh, as of ``render_frames``
     """
 
     machine: MachineOptions
@@ -57,6 +59,17 @@ class CompareOptions:
     engine: str = AUTO
     random_memory: int | None = None
     processes: int | None = None
+    frames: int | None = None
+    turn: float | None = None
+    path: Path | None = None
+
+    def views(self, scene: str | Path) -> SceneFrames | None:
+        """The scene from all sides, if any were asked for.  Raises ``InputError``."""
+        if self.frames is None and self.path is None:
+            if self.turn is not None:
+                raise InputError("--turn: is for several views; give --frames as well")
+            return None
+        return SceneFrames(scene, self.machine, frames=self.frames, turn=self.turn, path=self.path)
 
     def __post_init__(self) -> None:
         for nodes in self.nodes:
@@ -157,7 +170,9 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
                   command_line: str | None = None, retain: bool | None = None,
                   nodes: Sequence[int] = (), simulate: int = DEFAULT_SIMULATE, cells: bool = False,
                   engine: str = AUTO, random_memory: int | None = None,
-                  processes: int | None = None, **machine: Any) -> CageComparison:
+                  processes: int | None = None, frames: int | None = None,
+                  turn: float | None = None, path: str | Path | None = None,
+                  **machine: Any) -> CageComparison:
     """Draw a scene on several simulated cages, each in a process of its own, and compare them
     with the golden model and with each other.
 
@@ -180,7 +195,8 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     """
     cages = (cards,) if isinstance(cards, str) else tuple(cards)
     options = CompareOptions(MachineOptions(**machine), cages, retain, tuple(nodes), simulate,
-                             cells, engine, random_memory, processes)
+                             cells, engine, random_memory, processes, frames, turn,
+                             None if path is None else Path(path))
     if out is None:
         return _compared(scene, options, command_line, step)
     from .comparison_report import COMPARISON_FILES, write_comparison  # charts take a second
@@ -199,11 +215,12 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
               step: Step | None) -> CageComparison:
     began = time.perf_counter()
     make_engine(options.engine)  # one that cannot run is no fault of a cage's
-    loaded = load_scene(scene, options.machine)
+    views = options.views(scene)
+    loaded = load_scene(scene, options.machine) if views is None else views.first
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
     known = {(cage.spelled, cage.retained) for cage in cages}
-    jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells)
+    jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells, views=views)
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
              for place in points]

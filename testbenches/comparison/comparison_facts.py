@@ -9,6 +9,7 @@ from ...golden.organisations.machine_facts import machine_facts
 from .cage import CageRun
 from .compare_cages import CageComparison
 from .node_sweep import Curve, FrameTime
+from .view_spread import spreads
 
 
 def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
@@ -34,6 +35,8 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
                           each piece between two nodes), steps (pixels of the longest send)
         ``memory``        bits in all, memories (words, bits, instances)
         ``cells``         flip_flops, gates, multipliers; None where they were not counted
+        ``views``         where several were asked for, how many, and the least, mean and greatest
+                          draw, merge, fragments, busiest_node_share, pixels_sent; else None
         ``engine`` ``simulated_cycles`` ``seconds`` ``build_seconds``
 
     ``refused``       objects: label, cards, retained, reason, failed (it was built, and delivered
@@ -82,11 +85,19 @@ def cage_facts(run: CageRun) -> dict[str, Any]:
         "memory": {"bits": run.memory_bits,
                    "memories": [asdict(memory) for memory in run.memories]},
         "cells": run.cells,
+        "views": _views(run),
         "engine": simulation.engine,
         "simulated_cycles": simulation.cycles,
         "seconds": simulation.seconds,
         "build_seconds": simulation.build_seconds,
     }
+
+
+def _views(run: CageRun) -> dict[str, Any] | None:
+    if not run.views:
+        return None
+    return {"views": len(run.views),
+            **{name: asdict(spread) for name, spread in spreads(run.views).items()}}
 
 
 def _traffic(run: CageRun) -> dict[str, Any]:

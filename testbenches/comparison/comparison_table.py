@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import astuple
 from itertools import groupby
 
 from ...golden.organisations.organisation_of import organisation_of
@@ -10,6 +11,10 @@ from ..support.text_table import TextTable, print_tables, tables_text
 from .cage import CageRun
 from .compare_cages import CageComparison
 from .node_sweep import Curve
+from .view_spread import spreads
+
+#: What is told only of several views.
+OF_VIEWS = "over all views: least / mean / greatest"
 
 #: Stands for a figure that a cage does not have.
 NOTHING = "-"
@@ -28,6 +33,16 @@ def _sent(figure: Callable[[CageRun], int]) -> Callable[[CageRun], str]:
 
 def _cells(name: str) -> Callable[[CageRun], str]:
     return lambda run: NOTHING if run.cells is None else f"{run.cells[name]:,}"
+
+
+def _spread(name: str, form: str = "{:,.0f}") -> Callable[[CageRun], str]:
+    """Least, mean and greatest over all views."""
+    def figure(run: CageRun) -> str:
+        if not run.views or (name == "pixels_sent" and not run.configuration.merge):
+            return NOTHING
+        return " / ".join(form.format(number) for number in astuple(spreads(run.views)[name]))
+
+    return figure
 
 
 FIGURES: dict[str, Rows] = {
@@ -53,6 +68,13 @@ FIGURES: dict[str, Rows] = {
         "bits on the busiest link": _sent(
             lambda run: run.traffic.busiest_piece * run.traffic.pixel_bits),
     },
+    OF_VIEWS: {
+        "clocks to draw": _spread("draw"),
+        "clocks to merge": _spread("merge"),
+        "fragments of a view": _spread("fragments"),
+        "of its busiest node": _spread("busiest_node_share", "{:.1%}"),
+        "pixels sent for it": _spread("pixels_sent"),
+    },
     "memory": {"bits": lambda run: f"{run.memory_bits:,}"},
     "cells": {
         "flip-flops": _cells("flip_flops"),
@@ -64,10 +86,14 @@ FIGURES: dict[str, Rows] = {
 
 def figures(comparison: CageComparison) -> dict[str, list[tuple[str, list[str]]]]:
     """Heading → rows, of each its name and a figure for each cage."""
-    counted = any(run.cells is not None for run in comparison.runs)
+    left_out = set()
+    if all(run.cells is None for run in comparison.runs):
+        left_out.add("cells")
+    if not any(run.views for run in comparison.runs):
+        left_out.add(OF_VIEWS)
     return {heading: [(name, [figure(run) for run in comparison.runs])
                       for name, figure in rows.items()]
-            for heading, rows in FIGURES.items() if counted or heading != "cells"}
+            for heading, rows in FIGURES.items() if heading not in left_out}
 
 
 def tables(comparison: CageComparison) -> list[TextTable]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +41,8 @@ class SceneFrames(Sequence[DisplayList]):
         self._loaded = read_scene(scene)
         self.views = _views(self._loaded, options, frames, turn, path)
         self.most_triangles = 0
-        self._made = lru_cache(_KEPT)(self._make)
-        self.first: SceneDisplayList = self._made(0)
+        self._kept: dict[int, SceneDisplayList] = {}  # those that were made last
+        self.first: SceneDisplayList = self.scene(0)
 
     @property
     def views_as_seen(self) -> list[View]:
@@ -62,12 +61,13 @@ class SceneFrames(Sequence[DisplayList]):
 
     def scene(self, number: int) -> SceneDisplayList:
         """The display list of one picture, with its name."""
-        return self._made(number)
-
-    def _make(self, number: int) -> SceneDisplayList:
-        made = load_scene(self._loaded, self._options, self.views[number])
-        self.most_triangles = max(self.most_triangles, made.display_list.triangles)
-        return made
+        if number not in self._kept:
+            made = load_scene(self._loaded, self._options, self.views[number])
+            self.most_triangles = max(self.most_triangles, made.display_list.triangles)
+            while len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[number] = made
+        return self._kept[number]
 
 
 def _views(loaded: LoadedScene, options: MachineOptions, frames: int | None, turn: float | None,

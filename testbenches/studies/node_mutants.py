@@ -51,6 +51,8 @@ _MAP_TEST = "tests/hdl/merging/test_drawn_map.py"
 _LIST_TEST = "tests/hdl/nodes/test_list_memory.py"
 _GATE_TEST = "tests/hdl/nodes/test_node_gate.py"
 _TIES = "tests/hdl/nodes/test_chain_merge.py::test_ties"
+_CROSSBAR = "hdl/direct/crossbar.py"
+_CROSSBAR_TEST = "tests/hdl/direct/test_crossbar.py"
 _COMPARED = "Value.cast(self.higher) < Value.cast(self.lower)"
 _PASSED = "            leaving.pixel.eq(arriving.pixel),\n        ]\n"
 
@@ -147,6 +149,25 @@ THOUGHTS = (
             "hdl/controller/merge_control.py",
             "self._all_show & (controller.shown == controller.pictures.front)", "C(1)",
             "tests/machine/nodes/test_many_nodes.py"),
+    Thought("an arbiter that starves", "hdl/direct/round_robin.py",
+            "Mux(ahead.any(), _lowest(ahead), _lowest(requests))", "_lowest(requests)",
+            "tests/hdl/direct/test_round_robin.py"),
+    Thought("a fragment does not say who drew it", "hdl/rasteriser/interpolator.py",
+            "order.append(self.node)", "order.append(C(0, len(self.node)))",
+            "tests/machine/nodes/test_direct_frames.py::test_other_cages"),
+    Thought("two units take from an element that has one queue", _CROSSBAR,
+            "queue.waiting & free & (targets", "queue.waiting & (targets", _CROSSBAR_TEST),
+    Thought("one more waits than there is a place for", "hdl/direct/fragment_queue.py",
+            "count != self.depth", "count != self.depth + 1", _CROSSBAR_TEST),
+    Thought("a fragment is given before the last one is taken", "hdl/direct/unit_feed.py",
+            "self.grant.eq(Mux(move, arbiter.grant, 0))", "self.grant.eq(arbiter.grant)",
+            _CROSSBAR_TEST),
+    Thought("all is done while memory units still write", "hdl/direct/direct_merge.py",
+            "crossbar.busy | Cat(own.busy for own in self.units).any()", "crossbar.busy",
+            "tests/hdl/direct/test_direct_merge.py"),
+    Thought("fragments that follow closely see what was there before",
+            "hdl/depth_test/two_ports.py", "Mux(follows & winning, write.depth, stored)",
+            "stored", "tests/hdl/memory_unit/test_own_depth_test.py"),
 )
 
 

@@ -156,16 +156,15 @@ class ListBroadcasts:
 def direct_clocks(elements: Elements, streams: ElementStreams, crossbar: Crossbar,
                   ports: UnitPorts, broadcast: ControllersBroadcast | ListBroadcasts
                   ) -> Float64:
-    """float64 (triangles,): the last clock in which a unit takes a fragment of each triangle, as
+    """float64 (triangles,): the last clock in which a unit is at work for each triangle, as
     ``streams`` count them."""
     drawn = np.zeros(len(streams.walk))
     now, queued = 0, True
     while queued or not ports.idle or not elements.done:
         element, unit = crossbar.chosen(ports.ready())
         drawn[elements.draw(now, crossbar)] = now
-        fragment = crossbar.queues.take(element, unit)
-        ports.take(unit, fragment)
-        drawn[streams.triangle[fragment]] = now
+        found = ports.take(unit, crossbar.queues.take(element, unit))
+        drawn[streams.triangle[found]] = now + ports.latency
         elements.walk(now)
         broadcast.send(now, elements)
         queued = bool(crossbar.queues.waiting.any())

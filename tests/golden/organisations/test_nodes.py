@@ -1,5 +1,6 @@
 """Cages of nodes: who draws, holds, shows and reads back what, and which of them draw nothing."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.shares import Shares
+from cardcage.golden.organisations.snooped_nodes import SnoopedNodes
 from cardcage.golden.specification.commands import Fault
 from cardcage.golden.specification.configuration import MachineConfiguration
 
@@ -21,13 +23,16 @@ CAGES = {
     "orphans in one": {"cards": "PMM{merge} MPM{merge} PMM{merge}", "allow_orphans": True},
     "orphans in two": {"cards": "MPMMM{merge} MMPMM{merge}", "allow_orphans": True},
 }
-NAMES = {"C": "chain of nodes", "T": "tree of nodes"}
+NAMES = {"C": "chain of nodes", "T": "tree of nodes", "S": "snooped bus of nodes"}
 
 
 def cage(name, merge, **changes):
     fields = {"width": 19, "height": 13, "fraction_bits": 16} | CAGES[name] | changes
-    return organisation_of(MachineConfiguration(
-        **fields | {"cards": fields["cards"].format(merge=merge)}))
+    cards = fields["cards"].format(merge=merge)
+    if merge == "S":
+        fields = {"tag_bits": 3} | fields
+        cards += fields.pop("frame_units", "FF")
+    return organisation_of(MachineConfiguration(**fields | {"cards": cards}))
 
 
 @pytest.fixture(params=product(CAGES, NAMES), ids=" ".join)
@@ -44,7 +49,7 @@ def owners_by_hand(organisation):
     """Walk the backplane: units are numbered anew in each node, and belong to the last element
     passed in it, -1 to nobody."""
     owners, units, element, last = [], [], -1, -1
-    for card in organisation.configuration.cards:
+    for card in organisation.configuration.cards.rstrip("F"):
         if card == "P":
             element += 1
             last = element
@@ -121,14 +126,19 @@ def test_blocks_cut_up_what_each_node_owns(organisation):
 def test_the_scan_tile_repeats_over_the_picture(organisation):
     tile, group = organisation.scan_tile, organisation.scan_group
     x, y = pixels(organisation)
-    np.testing.assert_array_equal(organisation.unit(x, y),
+    scanned = organisation
+    if organisation.configuration.snoops:  # a cage of its frame units, at the nodes' resolution
+        width, height, *_ = organisation.resolution
+        scanned = organisation_of(MachineConfiguration("PMM", width, height, fraction_bits=16))
+    np.testing.assert_array_equal(scanned.unit(x, y),
                                   tile[y % tile.shape[0], x % tile.shape[1]])
-    reads = np.bincount(tile[0, ::group], minlength=organisation.units)
+    reads = np.bincount(tile[0, ::group], minlength=scanned.units)
     assert reads.max() * -(-organisation.resolution.width // tile.shape[1]) >= (
         organisation.scan_reads_per_line) > 0
 
 
-@pytest.mark.parametrize(("merge", "scanned"), [("C", [True] * 3), ("T", [True, False, False])])
+@pytest.mark.parametrize(("merge", "scanned"), [
+    ("C", [True] * 3), ("T", [True, False, False]), ("S", [False] * 3)])
 def test_which_nodes_are_scanned(merge, scanned):
     organisation = cage("cut up differently", merge)
     assert [organisation.is_scanned(node) for node in range(3)] == scanned
@@ -150,9 +160,18 @@ def read_back_by_hand(organisation, image):
     place = {(unit, word): image[row, column] for unit, word, column, row in zip(
         organisation.unit(x, y).tolist(), organisation.word(x, y).tolist(), x, y, strict=True)}
     padding = -5
-    return [place.get((unit, word), padding)
-            for unit, owner in enumerate(owners_by_hand(organisation)[0]) if owner >= 0
-            for word in range(organisation.words)]
+    owners = owners_by_hand(organisation)
+
+    def of_node(node, farther):
+        return [place.get((unit, word), padding) + farther
+                for unit, owner in enumerate(owners[node]) if owner >= 0
+                for word in range(organisation.words)]
+
+    if organisation.configuration.merge == "T":
+        return of_node(0, 0)
+    nearest = organisation.nodes // 2  # the others are farther everywhere
+    return [depth for node in range(organisation.nodes)
+            for depth in of_node(node, 7 * abs(node - nearest))]
 
 
 def test_depths_go_where_their_pixels_are(organisation):
@@ -168,8 +187,8 @@ def test_depths_go_where_their_pixels_are(organisation):
 def test_a_coarser_cage_shows_each_pixel_several_times(merge):
     organisation = cage("coarser", merge)
     assert organisation.resolution == (10, 7, 1, 1)
-    # A chain is read by the scan's pixels, a tree by node 0's words.
-    assert organisation.depths_read_back == {"C": 19 * 13, "T": 10 * 7}[merge]
+    # A chain is read by the scan's pixels, a tree by node 0's words, a bus by those of all.
+    assert organisation.depths_read_back == {"C": 19 * 13, "T": 10 * 7, "S": 3 * 10 * 7}[merge]
     video = organisation.video(known(organisation))
     assert video.shape == (13, 19) and video[12, 18] == 6009
     assert organisation.video_pixel(18, 12) == (9, 6)
@@ -206,3 +225,30 @@ def test_which_cages_draw_nothing(merge, fields, fault):
     assert [domain.node for domain in organisation.domains] == [
         node for node, cards in enumerate(organisation.configuration.node_cards)
         for card in cards if card == "P"]
+
+
+def test_steps_of_merging():
+    assert [cage("cut up differently", merge).merge_steps for merge in "CTS"] == [0, 2, 3]
+    assert [cage("one node", merge).merge_steps for merge in "CTS"] == [0, 0, 1]
+
+
+@pytest.mark.parametrize(("frame_units", "fault"), [
+    ("F", None), ("FF", None), ("FFF", Fault.UNITS_UNSUPPORTED), ("FFFF", None),
+    ("FFFFFF", Fault.UNITS_UNSUPPORTED)])
+def test_frame_units_that_cannot_be(frame_units, fault):
+    for name in ("four alike", "coarser"):
+        assert cage(name, "S", allow_orphans=True, frame_units=frame_units).fault == fault
+    # Of what is wrong with nodes and with frame units the number of these is told.
+    differ = cage("four alike", "S", cards="PMM{merge} PM{merge}", words=130, allow_orphans=True,
+                  frame_units=frame_units)
+    assert differ.fault == (fault or Fault.NODES_DIFFER)
+
+
+def test_frame_units_that_do_not_hold_the_picture():
+    """As if such boards had been put in: those of the configuration hold all of it."""
+    for words, own, fault in ((0, 133, None), (0, 132, Fault.UNITS_UNSUPPORTED),
+                              (70, 40, None), (70, 39, Fault.UNITS_UNSUPPORTED)):
+        configuration = MachineConfiguration("3x(PMS)FF", 19, 13, fraction_bits=16, words=words)
+        assert configuration.frame.words == 133
+        vars(configuration)["frame"] = replace(configuration.frame, words=own)
+        assert SnoopedNodes(configuration).fault == fault

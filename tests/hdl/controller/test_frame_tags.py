@@ -44,7 +44,7 @@ class Memory(Agent):
 
     def sample(self, ctx):
         dut = self.dut
-        assert [ctx.get(dut.depth), ctx.get(dut.color[0]), ctx.get(dut.color[1])] == self.current
+        assert [ctx.get(dut.depth), *map(ctx.get, dut.color)] == self.current[:3]
         self.waits += self.asks and not self.starts
         if self.left:
             self.left -= 1
@@ -79,9 +79,44 @@ class After(Agent):
         self.memory.after(ctx)
 
 
-def frames(tag_bits, seed, count=200, **arguments):
-    dut = FrameTags(tag_bits=tag_bits)
-    memory = Memory(dut, seed, count, **arguments)
+class WithFrameUnits(Memory):
+    """Frames are handed over to frame units, whose colours are swapped when each is merged, which
+    may take long after the next one started."""
+
+    def __init__(self, dut, seed, frames, **arguments):
+        super().__init__(dut, seed, frames, **arguments)
+        self.current, self.held = [1] * 5, [{0, 1} for _ in range(5)]
+        self.shown = 0
+        self.drawn = self.merging = False
+
+    def drive(self, ctx):
+        chance, self.swap = self.swap, 0.0  # only what is handed over changes places
+        super().drive(ctx)
+        self.swap = chance
+        self.hands = self.drawn and not self.merging and self.pick.random() < chance
+        ctx.set(self.dut.hand_over, self.hands)
+        ctx.set(self.dut.frame_back, 1 - self.shown)
+        if self.hands:
+            ctx.set(self.dut.start, 0)
+            self.starts = False
+
+    def sample(self, ctx):
+        super().sample(ctx)
+        assert [ctx.get(tag) for tag in self.dut.frame_color] == self.current[3:]
+        self.drawn = (self.drawn or self.starts) and not self.hands
+        if self.merging and self.pick.random() < self.swap:  # the picture is merged and shown
+            self.merging, self.shown = False, 1 - self.shown
+        if self.hands:
+            tag, part = self.current[2 - self.front], 4 - self.shown
+            assert tag not in self.held[part], f"tag {tag} is still in part {part}"
+            self.current[part] = tag
+            self.held[part].add(tag)
+            self.front, self.merging = 1 - self.front, True
+
+
+def frames(tag_bits, seed, count=200, memory=Memory, **arguments):
+    dut = FrameTags(tag_bits=tag_bits, frame_units=memory is WithFrameUnits)
+    memory = memory(dut, seed, count, **arguments)
     simulate(dut, After(memory), memory)
     return memory
 
@@ -96,6 +131,18 @@ def test_no_tag_is_given_out_that_a_word_may_have(tag_bits, swap, seed):
                     length=lambda: pick.choice((1, 2, 20, 60)))
     # And all of them are used, but one that is shown all the time.
     assert memory.used == set(range(2 if swap == 0 else 1, 1 << tag_bits))
+    assert memory.waits > 0
+
+
+@pytest.mark.parametrize("tag_bits", [3, 4])
+@pytest.mark.parametrize("swap", [0.05, 0.5, 1.0])
+@pytest.mark.parametrize("seed", range(2))
+def test_nor_one_that_a_word_of_a_frame_unit_may_have(tag_bits, swap, seed):
+    """While one picture is shown, another merged, and a third drawn."""
+    pick = random.Random(f"units {seed}")
+    memory = frames(tag_bits, f"{tag_bits} {swap} {seed}", memory=WithFrameUnits, swap=swap,
+                    length=lambda: pick.choice((1, 2, 20, 60)))
+    assert memory.used == set(range(1, 1 << tag_bits))
     assert memory.waits > 0
 
 
@@ -118,6 +165,7 @@ def test_while_a_pass_does_not_end_each_tag_is_given_out_once():
 @pytest.mark.parametrize("wrong", [1, 7])
 def test_bad_widths(wrong):
     rejects(FrameTags, "tag_bits", tag_bits=wrong)
+    rejects(FrameTags, "tag_bits must be 3", tag_bits=2, frame_units=True)
 
 
 def test_latency():

@@ -41,7 +41,7 @@ class Slot(Agent):
     def boot(self, ctx):
         dut = self.dut
         if self.clock == 0:
-            for storage in (*dut.memory.storages, *dut._send.sender.map.storages):
+            for storage in (*dut.memory.storages, *dut._besides.sender.map.storages):
                 shape = storage.data.shape
                 for address in range(storage.depth):
                     value = self.pick.getrandbits(Shape.cast(shape).width)

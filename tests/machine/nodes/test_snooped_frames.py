@@ -21,6 +21,7 @@ from node_frames import (
 from wide_machines import wide_machine
 
 from cardcage.golden.merging.cage import merge_cage
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.frames.responses import Answers
 
@@ -115,3 +116,62 @@ def test_a_pixel_a_clock_and_little_else(cards, record_property):
     most = max(taken - sent.pixels for sent, taken in zip(traffic, clocks.tolist(), strict=True))
     record_property("measured", f"{cards}: {traffic[1].pixels} pixels merged in {clocks[1]} "
                     f"clocks, at most {most} more than pixels sent")
+
+
+@pytest.mark.parametrize("name", BUSES)
+def test_depths_are_those_of_the_picture_drawn_last(name):
+    """Of a frame that is not ended yet, and of one that is shown."""
+    machine, listed = model(name)
+    flat = machine.shading == "flat"
+    other = random_list(77, 12, width=machine.width, height=machine.height, flat=flat)
+    begun = immediate(machine, other)
+    words = [*immediate(machine, listed), READ_DEPTH, *begun[:-1], READ_DEPTH, begun[-1],
+             READ_DEPTH, READ_DEPTH]
+    answered = run(machine, words, compiled(), memory_seed=4, stall_seed=2)
+    organisation = organisation_of(machine)
+    depths = np.array(values_of(answered, ResponseKind.DEPTH)).reshape(
+        4, organisation.depths_read_back)
+    for read, drawn in zip(depths, (listed, other, other, other), strict=True):
+        np.testing.assert_array_equal(organisation.depth_image(read),
+                                      golden_picture(machine, drawn).depth)
+
+
+#: Cages, lists, and what a frame takes as long as.
+PACES = {
+    "drawing": ("2x(PMS)FF", 2, 60, "rising"),
+    "merging": ("8x(PMS)F", 2, 8, "falling"),
+    "a scan": ("2x(PMMPMMS)FF", 8, 2, "rising"),
+}
+FRAMES = 8
+
+
+@pytest.mark.parametrize("retained", [False, True])
+@pytest.mark.parametrize("bound", PACES)
+def test_a_frame_takes_what_takes_longest(bound, retained, record_property):
+    """Drawing, merging, or whole scans, of which each picture waits for one: from the second
+    merged picture on to the last one, within a twentieth."""
+    cards, clocks, count, depths = PACES[bound]
+    size = {"width": 16, "height": 16}
+    machine = wide_machine(random_list(0, 4, **size), cards=cards, clocks_per_pixel=clocks,
+                           memory_ports=2, fraction_bits=40, packet=1,
+                           list_words=64 if retained else 0)
+    listed = screens(machine, count, 2, depths)
+    frame = redrawn(machine, listed) if retained else immediate(machine, listed)
+    words = [*([CLEAR_LISTS, *loads(machine, listed)] if retained else []), *frame * FRAMES,
+             READ_DEPTH, READ_COUNTERS]
+    answered = run(machine, words, compiled())
+    check_merged(machine, listed, Answers(machine, answered).frame(FRAMES - 1, reading=0,
+                                                                  read_back=0))
+    times = cycles_of(answered, ResponseKind.MERGED)
+    drawn, merged = (values_of(answered, kind) for kind in (ResponseKind.FRAME_DRAWN,
+                                                            ResponseKind.MERGED))
+    time = (times[-1] - times[1]) / (FRAMES - 2)
+    draw = drawn[0]
+    merge = merged[0] - drawn[0]
+    scans = -(-max(draw, merge) // machine.cycles_per_scan) * machine.cycles_per_scan
+    record_property("measured", f"{cards}{', lists' * retained}: a frame in {time:.0f} clocks, "
+                    f"drawn in {draw}, merged in {merge}, a scan in {machine.cycles_per_scan}: "
+                    f"bound by {bound}")
+    assert time <= 1.05 * max(draw, merge) or time == scans
+    longest = {"drawing": draw, "merging": merge, "a scan": machine.cycles_per_scan}
+    assert max(longest, key=longest.get) == bound
