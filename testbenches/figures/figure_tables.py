@@ -10,8 +10,9 @@ from .assignments.assignment import ASSIGNMENTS, ROUND_ROBIN
 from .assignments.frame_times import MAP_NODES, mean_times
 from .claims import summary
 from .cox_hanrahan import CoxHanrahan
+from .figure_scenes import Size
 from .findings import assignment_findings
-from .merge_costs import NODES, MergeCosts
+from .merge_costs import NODES, MergeCosts, merge_size
 from .paper_table import contradictions, paper_rows
 from .scene_traffic import PACKETS, SHUFFLED
 
@@ -28,12 +29,11 @@ def headline(found: CoxHanrahan) -> list[str]:
 
 def tables(found: CoxHanrahan) -> list[TextTable]:
     """All that there are figures for."""
-    width, height = found.size
     made = [table_1(found), paper_table(), traffic_table(found)]
     if found.maps:
         made.append(assignment_table(found))
     if found.merges:
-        made.append(merge_table(found.merges, f"{width}x{height}"))
+        made.append(merge_table(found.merges, found.size))
     return made
 
 
@@ -120,8 +120,10 @@ def _latency(cost: MergeCosts, until: str) -> str:
     return NOTHING if latency is None else f"{latency[until]:,}"
 
 
-def merge_table(merges: Sequence[MergeCosts], size: str) -> TextTable:
+def merge_table(merges: Sequence[MergeCosts], size: Size) -> TextTable:
+    """``size`` of the figures."""
+    width, height = merge_size(size)
     return TextTable(
-        f"merges on {NODES} nodes at {size}, lists retained, dealt out round robin",
+        f"merges on {NODES} nodes at {width}x{height}, lists retained, dealt out round robin",
         ("", *(f"{cost.cage.cards} {cost.scene}" for cost in merges)),
         tuple((name, *(word(cost) for cost in merges)) for name, word in _COSTS.items()))

@@ -1,7 +1,6 @@
 """What every kind of merge costs on sixteen nodes: clocks, traffic, memory, logic.
 
-Cages are simulated, lists retained, at any size of the screen; boards on an ECP5 are those that
-``cardcage boards`` measures.
+Cages are simulated, lists retained; boards on an ECP5 are those that ``cardcage boards`` measures.
 """
 
 from __future__ import annotations
@@ -34,6 +33,9 @@ NODES = 16
 
 #: Memory units of each element.
 UNITS = 2
+
+#: Of the screen at most: cages of so many nodes simulate slowly.
+MOST_SIDE = 256
 
 #: The scenes, by their names among the figures.
 MERGE_SCENES = ("teapot", "sphereflake")
@@ -125,6 +127,12 @@ class MergeJob:
         if isinstance(run, Refused):
             raise (MachineError if run.failed else InputError)(str(run))
         return cage_facts(run)
+
+
+def merge_size(size: Size) -> Size:
+    """Of the cages' screen, where the figures have ``size``."""
+    width, height = size
+    return min(width, MOST_SIDE), min(height, MOST_SIDE)
 
 
 def board_figures(measure: bool, step: Callable[[str], None]) -> dict[str, BoardFigures]:

@@ -54,7 +54,7 @@ def test_a_cage_of_the_table():
     assert cost.per_lut == cost.fragments_per_clock / cost.cage_luts
     [without] = merge_costs([job], [facts], {"element": boards["element"]})
     assert without.board is without.cage_luts is without.per_lut is None
-    rows = {row[0]: row[1:] for row in merge_table([cost, without], "8x8").rows}
+    rows = {row[0]: row[1:] for row in merge_table([cost, without], (8, 8)).rows}
     assert rows["LUTs of a merge card"] == ("100", "--cells")
     assert rows["pixels sent"] == ("64", "64")
     # What was measured is kept.
