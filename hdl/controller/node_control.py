@@ -15,8 +15,10 @@ __all__ = ["NodeControl"]
 
 
 class NodeControl(OneNode):
-    """Adds up the nodes at boot, has lists loaded and drawn, and hands what is drawn on to a
-    ``Presenter``: while that has it merged and shown, lists may be changed.
+    """Adds up the nodes at boot, has lists loaded and drawn, and what is drawn merged and shown.
+
+    Where commands can be taken meanwhile, such as those that change lists, a ``Presenter`` does the
+    latter; elsewhere it is what comes next, as where the cage is all one node.
 
     A subclass says how its cards merge; this is for those that have nothing left to merge when all
     is drawn.
@@ -24,7 +26,8 @@ class NodeControl(OneNode):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.presenter = Presenter()
+        ahead = configuration.list_words or configuration.snoops
+        self.presenter = Presenter() if ahead else None
         #: Memory units of all nodes, and what is wrong with them.
         self.units = Signal(commands.RESPONSE_VALUE_BITS, name="node_units")
         self.unsupported = Signal(name="node_unsupported")
@@ -42,6 +45,10 @@ class NodeControl(OneNode):
     after_nodes = "CHECK_UNITS"
 
     # What of the merging differs from one kind of cards to the next.
+
+    #: ``merged``, and ``shown``, are always high.
+    merges_at_once = True
+    shows_at_once = True
 
     def merged(self, controller):
         """The picture that was drawn last can be scanned."""
@@ -63,8 +70,9 @@ class NodeControl(OneNode):
 
     def add_to(self, m, controller):
         self._count(m, controller)
-        self._present(m, controller)
-        self._take_turns(m, controller)
+        if self.presenter is not None:
+            self._present(m, controller)
+            self._take_turns(m, controller)
 
     def _count(self, m, controller):
         """Nodes' reports as they pass: each must be like the first one."""
@@ -98,24 +106,44 @@ class NodeControl(OneNode):
             m.d.sync += self.front(controller).eq(~self.front(controller))
 
     def _take_turns(self, m, controller):
-        """Two give responses: what one has begun to offer it offers until that is taken."""
+        """Two give responses."""
         own, presented, responses = self._answers, self.presenter.responses, controller.responses
-        begun = Signal(name="answer_begun")  # by what takes commands, and not by the presenter
-        turn = Signal(name="presenter_turn")
+        turn = self._presenter_turn(m)
         m.d.comb += [
-            turn.eq(presented.valid & ~begun),
             responses.valid.eq(own.valid | presented.valid),
-            responses.payload.eq(Mux(turn, presented.payload, own.payload)),
             own.ready.eq(responses.ready & ~turn),
             presented.ready.eq(responses.ready & turn),
         ]
+        if self.answers_meet:
+            m.d.comb += responses.payload.eq(Mux(turn, presented.payload, own.payload))
+        else:  # whoever has nothing to say says 0
+            m.d.comb += Value.cast(responses.payload).eq(
+                Value.cast(own.payload) | Value.cast(presented.payload))
+
+    @property
+    def answers_meet(self):
+        """Something else than what the presenter says may be answered while a picture is on its
+        way to the screen."""
+        return self.configuration.snoops
+
+    def _presenter_turn(self, m):
+        """What one has begun to offer it offers until that is taken."""
+        if not self.answers_meet:
+            return self.presenter.responses.valid
+        own = self._answers
+        begun = Signal(name="answer_begun")  # by what takes commands, and not by the presenter
+        turn = Signal(name="presenter_turn")
+        m.d.comb += turn.eq(self.presenter.responses.valid & ~begun)
         m.d.sync += begun.eq(own.valid & ~own.ready & ~turn)
+        return turn
 
     def answers(self, controller):
-        return self._answers
+        return controller.responses if self.presenter is None else self._answers
 
     def in_turn(self, controller, ready):
         """Lists are not what is presented; for all else there is no memory sooner."""
+        if self.presenter is None:
+            return ready
         return ready & (self.is_for_lists(controller) | self.presenter.idle)
 
     def is_for_lists(self, controller):
@@ -135,11 +163,28 @@ class NodeControl(OneNode):
         return Mux(units, Fault.UNITS_UNSUPPORTED, Fault.NODES_DIFFER)
 
     def after_drawn(self, m, controller):
+        if self.presenter is None:
+            return "REPORT_MERGED" if self.merges_at_once else "MERGING"
         m.d.comb += self.presenter.start.eq(self._answers.ready)
         return "COMMAND"
 
+    @property
+    def after_swap(self):
+        return "REPORT_SHOWN" if self.shows_at_once else "SWAPPED"
+
     def show(self, m, controller):
-        """That is the presenter's."""
+        """As a presenter does it, where there is none."""
+        if self.presenter is not None:
+            return
+        if not self.merges_at_once:
+            with m.State("MERGING"), m.If(self.merged(controller)):
+                m.next = "REPORT_MERGED"
+        with m.State("REPORT_MERGED"):
+            controller.respond(m, ResponseKind.MERGED, self.merge_cycles(controller), "SWAP")
+        super().show(m, controller)
+        if not self.shows_at_once:
+            with m.State("SWAPPED"), m.If(self.shown(controller)):
+                m.next = "REPORT_SHOWN"
 
     def commands(self, m, controller):
         if self.configuration.list_words:

@@ -45,7 +45,8 @@ class Clocks:
     ``load``   from when the first ``LOAD`` is taken until ``DRAW_LISTS`` is; None where every
                frame sends its triangles
     ``draw``   from the frame's start until all processing elements are done
-    ``merge``  from there until scans can show the nodes' pictures as one
+    ``merge``  from there until scans can show the nodes' pictures as one, of the frame that waits
+               least for the one before to be shown
     ``frame``  from one merged picture to the next, of frames that follow one another; a picture
                waits for the beginning of a scan
     """
@@ -122,10 +123,15 @@ class FrameSequence:
 
     @property
     def clocks(self) -> Clocks:
-        drawn, merged = self.simulation.draw_cycles, self.simulation.merge_cycles
         *_, before, last = self._merged
-        return Clocks(boot=self.simulation.boot_cycles, load=self._load(), draw=drawn,
-                      merge=0 if merged is None else merged - drawn, frame=last - before)
+        return Clocks(boot=self.simulation.boot_cycles, load=self._load(),
+                      draw=self.simulation.draw_cycles,
+                      merge=self._merge(), frame=last - before)
+
+    def _merge(self) -> int:
+        drawn, merged = ([value for found, value, _ in self._run.responses if found == kind]
+                         for kind in (ResponseKind.FRAME_DRAWN, ResponseKind.MERGED))
+        return min(np.subtract(merged, drawn).tolist()) if merged else 0
 
     def _load(self) -> int | None:
         if not self._configuration.list_words:

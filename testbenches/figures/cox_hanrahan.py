@@ -13,7 +13,15 @@ from ..engines.choose_engine import AUTO, make_engine
 from ..support.processes import cores, in_processes
 from .assignments.frame_times import MAP_SCENES, AssignmentTimes, TimesJob
 from .figure_scenes import FigureScene, Size, figure_scenes
-from .merge_costs import CAGES, MERGE_SCENES, MergeCosts, MergeJob, board_figures, merge_costs
+from .merge_costs import (
+    CAGES,
+    MERGE_SCENES,
+    MergeCosts,
+    MergeJob,
+    board_figures,
+    merge_costs,
+    merge_size,
+)
 from .scene_traffic import PACKETS, SceneTraffic, TrafficJob
 from .sent_in_rtl import POINT_NODES, POINT_SCENE, POINT_SIZE, Point, PointJob
 
@@ -48,7 +56,7 @@ class FiguresOptions:
         scenes = self.chosen()
         found: list[Any] = []
         if self.simulate:
-            found += [MergeJob(cage, scene, self.size, self.engine) for scene in scenes
+            found += [MergeJob(cage, scene, merge_size(self.size), self.engine) for scene in scenes
                       if scene.name in MERGE_SCENES for cage in CAGES]
             found += [PointJob(POINT_CARDS.format(nodes), name, packet, POINT_SCENE, POINT_SIZE,
                                self.engine)

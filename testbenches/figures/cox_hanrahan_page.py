@@ -40,7 +40,6 @@ def write_cox_hanrahan(found: CoxHanrahan, folder: Path) -> None:
 
 def cox_hanrahan_page(found: CoxHanrahan, facts: dict[str, Any]) -> str:
     """The page, complete in itself."""
-    width, height = found.size
     small = found.point_traffic
     return page_environment().get_template("cox_hanrahan.html").render(
         {name: fact for name, fact in facts.items() if name not in ("paper_table", "traffic")},
@@ -54,5 +53,5 @@ def cox_hanrahan_page(found: CoxHanrahan, facts: dict[str, Any]) -> str:
         point_scene=small,
         map_chart=assignment_chart(found.maps) if found.maps else "",
         map_table=assignment_table(found) if found.maps else None,
-        merge_table=merge_table(found.merges, f"{width}x{height}") if found.merges else None,
+        merge_table=merge_table(found.merges, found.size) if found.merges else None,
     )

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from ..support.text_table import TextTable
 from .assignments.assignment import ASSIGNMENTS, ROUND_ROBIN
 from .assignments.frame_times import MAP_NODES, mean_times
 from .claims import summary
 from .cox_hanrahan import CoxHanrahan
+from .figure_scenes import Size
 from .findings import assignment_findings
-from .merge_costs import NODES, MergeCosts
+from .merge_costs import NODES, MergeCosts, merge_size
 from .paper_table import contradictions, paper_rows
 from .scene_traffic import PACKETS, SHUFFLED
 
@@ -27,12 +29,11 @@ def headline(found: CoxHanrahan) -> list[str]:
 
 def tables(found: CoxHanrahan) -> list[TextTable]:
     """All that there are figures for."""
-    width, height = found.size
     made = [table_1(found), paper_table(), traffic_table(found)]
     if found.maps:
         made.append(assignment_table(found))
     if found.merges:
-        made.append(merge_table(found.merges, f"{width}x{height}"))
+        made.append(merge_table(found.merges, found.size))
     return made
 
 
@@ -100,16 +101,18 @@ _COSTS: dict[str, Callable[[MergeCosts], str]] = {
     "bits sent": lambda cost: f"{cost.facts['traffic']['bits']:,}",
     "bits on the busiest link": lambda cost: f"{cost.facts['traffic']['busiest_link']['bits']:,}",
     "memory, bits": lambda cost: f"{cost.facts['memory']['bits']:,}",
-    "LUTs of a merge card": lambda cost: ON_REQUEST if cost.board is None
-    else f"{cost.board.luts:,}",
-    "MHz of a merge card": lambda cost: ON_REQUEST if cost.board is None
-    else f"{cost.board.mhz:.0f}",
-    "LUTs of the cage": lambda cost: ON_REQUEST if cost.cage_luts is None
-    else f"{cost.cage_luts:,}",
+    "LUTs of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.luts:,}"),
+    "MHz of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.mhz:.0f}"),
+    "LUTs of the cage": lambda cost: _placed(cost, cost.cage_luts and f"{cost.cage_luts:,}"),
     "fragments a clock": lambda cost: f"{cost.fragments_per_clock:.3f}",
-    "fragments a clock for 1,000 LUTs": lambda cost: ON_REQUEST if cost.per_lut is None
-    else f"{1000 * cost.per_lut:.4f}",
+    "fragments a clock for 1,000 LUTs": lambda cost: _placed(
+        cost, cost.per_lut and f"{1000 * cost.per_lut:.4f}"),
 }
+
+
+def _placed(cost: MergeCosts, words: Any) -> str:
+    """What was measured of boards that were placed."""
+    return str(words or (ON_REQUEST if cost.cage.boards else NOTHING))
 
 
 def _latency(cost: MergeCosts, until: str) -> str:
@@ -117,8 +120,10 @@ def _latency(cost: MergeCosts, until: str) -> str:
     return NOTHING if latency is None else f"{latency[until]:,}"
 
 
-def merge_table(merges: Sequence[MergeCosts], size: str) -> TextTable:
+def merge_table(merges: Sequence[MergeCosts], size: Size) -> TextTable:
+    """``size`` of the figures."""
+    width, height = merge_size(size)
     return TextTable(
-        f"merges on {NODES} nodes at {size}, lists retained, dealt out round robin",
+        f"merges on {NODES} nodes at {width}x{height}, lists retained, dealt out round robin",
         ("", *(f"{cost.cage.cards} {cost.scene}" for cost in merges)),
         tuple((name, *(word(cost) for cost in merges)) for name, word in _COSTS.items()))

@@ -35,9 +35,9 @@ def assignment_findings(maps: Sequence[AssignmentTimes]) -> list[str]:
     packet = min((name for name in kept if not name.startswith("runs")),
                  key=lambda name: means[name].in_turn)
     lines = [
-        f"Of those that keep the list's order, {best} makes the shortest frames: "
-        f"{_part(means[best])}.  Of the packets it is {packet}: {_part(means[packet])}.",
-        f"Shortest of all is {NEAREST_WORK}: {_part(means[NEAREST_WORK])}.  "
+        f"Shortest of those that keep the list's order: {best}, {_part(means[best])}.  Shortest of "
+        f"the packets: {packet}, {_part(means[packet])}.",
+        f"Shortest of all: {NEAREST_WORK}; {_part(means[NEAREST_WORK])}.  "
         f"{_least(maps, NEAREST_WORK)}",
     ]
     def imbalance(each: AssignmentTimes) -> float:

@@ -1,7 +1,6 @@
 """What every kind of merge costs on sixteen nodes: clocks, traffic, memory, logic.
 
-Cages are simulated, lists retained, at any size of the screen; boards on an ECP5 are those that
-``cardcage boards`` measures.
+Cages are simulated, lists retained; boards on an ECP5 are those that ``cardcage boards`` measures.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ from typing import Any
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.card_order import (
     CHAIN_MERGE,
+    DIRECT_MERGE,
     FRAME_UNIT,
     MEMORY_UNIT,
     PROCESSING_ELEMENT,
@@ -34,6 +34,9 @@ NODES = 16
 #: Memory units of each element.
 UNITS = 2
 
+#: Of the screen at most: cages of so many nodes simulate slowly.
+MOST_SIDE = 256
+
 #: The scenes, by their names among the figures.
 MERGE_SCENES = ("teapot", "sphereflake")
 
@@ -48,7 +51,11 @@ class BoardFigures:
 
 @dataclass(frozen=True)
 class MergeCage:
-    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``."""
+    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``.
+
+    There are none of a direct merge, whose crossbar is too large for so many elements to be placed
+    within reason; ``cardcage boards`` has a smaller one.
+    """
 
     merge: str
     cards: str
@@ -56,7 +63,7 @@ class MergeCage:
 
     def luts(self, boards: Mapping[str, BoardFigures]) -> int | None:
         """Of all cards; None where some of them were not measured."""
-        if not all(name in boards for name in self.boards.values()):
+        if not self.boards or not all(name in boards for name in self.boards.values()):
             return None
         return sum(boards[self.boards[card]].luts for card in parse_cards(self.cards))
 
@@ -71,6 +78,7 @@ CAGES = (
     MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", _boards("unit-of-tree", TREE_MERGE, "tree-merge")),
     MergeCage(SNOOP_MERGE, f"{NODES}x(PMMS)FF",
               _boards("unit-of-snoop", SNOOP_MERGE, "snoop-merge") | {FRAME_UNIT: "frame-unit"}),
+    MergeCage(DIRECT_MERGE, f"{NODES}xP D {NODES}xM", {}),
 )
 
 
@@ -121,6 +129,12 @@ class MergeJob:
         return cage_facts(run)
 
 
+def merge_size(size: Size) -> Size:
+    """Of the cages' screen, where the figures have ``size``."""
+    width, height = size
+    return min(width, MOST_SIDE), min(height, MOST_SIDE)
+
+
 def board_figures(measure: bool, step: Callable[[str], None]) -> dict[str, BoardFigures]:
     """Those of all boards of ``CAGES`` that were measured before; all of them where they are to be
     measured, some minutes each.  Raises ``InputError`` where the tools are missing or fail."""
@@ -150,5 +164,5 @@ def merge_costs(jobs: Sequence[MergeJob], facts: Sequence[dict[str, Any]],
                 boards: Mapping[str, BoardFigures]) -> list[MergeCosts]:
     """What the jobs found, with their boards."""
     return [MergeCosts(job.cage, job.scene.name, found,
-                       boards.get(job.cage.boards[job.cage.merge]), job.cage.luts(boards))
+                       boards.get(job.cage.boards.get(job.cage.merge, "")), job.cage.luts(boards))
             for job, found in zip(jobs, facts, strict=True)]

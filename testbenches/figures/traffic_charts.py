@@ -38,7 +38,7 @@ def save_traffic_png(scenes: Sequence[SceneTraffic], path: Path) -> None:
     for axes, scene in zip(panels, scenes, strict=True):
         _traffic(axes, scene, ())
         axes.set_title(scene.name, fontsize=10)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6,
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3,
                   frameon=False, fontsize=9)
     figure.savefig(path, dpi=110, metadata={"Software": None})
 

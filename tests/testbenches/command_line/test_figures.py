@@ -20,6 +20,7 @@ from cardcage.testbenches.figures.cox_hanrahan import (
 )
 from cardcage.testbenches.figures.cox_hanrahan_facts import PAPER
 from cardcage.testbenches.figures.cox_hanrahan_page import FIGURE_FILES
+from cardcage.testbenches.figures.figure_scenes import FigureScene
 from cardcage.testbenches.figures.merge_costs import MergeCage
 from cardcage.testbenches.figures.paper_table import paper_rows
 
@@ -46,6 +47,9 @@ def place(tmp_path, kept, recording, monkeypatch) -> Path:
         replace(row, triangles=60 * row.triangles) for row in paper_rows()))
     monkeypatch.setattr(cox_hanrahan, "CAGES", (
         MergeCage("T", "2x(PMT)", {"P": "element", "M": "unit-of-tree", "T": "tree-merge"}),))
+    monkeypatch.setattr(cox_hanrahan, "POINT_SCENE", FigureScene("few", "random:n=9,size=5,seed=5"))
+    monkeypatch.setattr(cox_hanrahan, "POINT_SIZE", (8, 8))
+    monkeypatch.setattr(cox_hanrahan, "POINT_NODES", (2,))
     return tmp_path
 
 
@@ -94,8 +98,11 @@ def test_with_machines(place):
     assert merge["cards"] == "2x(PMT)" and merge["scene"] == "teapot"
     assert merge["cage"]["equal"] and merge["cage"]["cycles"]["merge"] > 0
     assert merge["merge_card"] is None
+    assert [(point["cards"], point["nodes"], point["assignment"]) for point in facts["points"]] == [
+        ("2x(PMMS)FF", 2, "round robin"), ("2x(PMMS)FF", 2, "contiguous")]
+    assert all(point["equal"] and point["sent"] == point["golden"] for point in facts["points"])
     page = (place / "cardcage-out/cox-hanrahan.html").read_text("utf-8")
-    assert "All merges" in page and "--cells" in page
+    assert "All merges" in page and "--cells" in page and "Measured in RTL: few" in page
 
 
 def test_a_difference_is_status_1(recording, monkeypatch):

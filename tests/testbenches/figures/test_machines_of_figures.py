@@ -19,6 +19,7 @@ from cardcage.testbenches.figures.merge_costs import (
     MergeJob,
     board_figures,
     merge_costs,
+    merge_size,
 )
 from cardcage.testbenches.figures.sent_in_rtl import PointJob
 from cardcage.testbenches.fpga.boards import BOARDS
@@ -54,11 +55,16 @@ def test_a_cage_of_the_table():
     assert cost.per_lut == cost.fragments_per_clock / cost.cage_luts
     [without] = merge_costs([job], [facts], {"element": boards["element"]})
     assert without.board is without.cage_luts is without.per_lut is None
-    rows = {row[0]: row[1:] for row in merge_table([cost, without], "8x8").rows}
+    rows = {row[0]: row[1:] for row in merge_table([cost, without], (8, 8)).rows}
     assert rows["LUTs of a merge card"] == ("100", "--cells")
     assert rows["pixels sent"] == ("64", "64")
     # What was measured is kept.
     assert replace(job, scene=replace(SCENE)).run() == facts
+
+
+def test_the_screen_of_the_cages():
+    assert [merge_size(size) for size in ((8, 300), (256, 256), (512, 100))] == [
+        (8, 256), (256, 256), (256, 100)]
 
 
 def test_a_cage_that_there_cannot_be():

@@ -8,15 +8,25 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from cardcage.golden.cycles.cycle_model import predict_cycles
+from cardcage.golden.organisations.organisation_of import organisation_of
+from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
 from cardcage.testbenches.support.cache import ENVIRONMENT_VARIABLE
-from testbenches.studies import golden_benchmark, merge_traffic, model_building, word_fuzz
+from testbenches.studies import (
+    equal_work,
+    golden_benchmark,
+    merge_traffic,
+    model_building,
+    word_fuzz,
+)
 
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("name", ["bound_search", "golden_benchmark", "interpolator_benchmark",
+@pytest.mark.parametrize("name", ["bound_search", "equal_work", "golden_benchmark",
+                                  "interpolator_benchmark",
                                   "merge_traffic", "model_building", "mutation_campaign",
                                   "node_mutants", "node_speed", "word_fuzz"])
 def test_a_study_runs_from_a_clone(name):
@@ -24,6 +34,21 @@ def test_a_study_runs_from_a_clone(name):
                           cwd=ROOT, capture_output=True, text=True, timeout=100)
     assert done.returncode == 0, done.stderr
     assert f"python -m testbenches.studies.{name}" in done.stdout
+
+
+def test_runs_of_equal_work_that_are_sent():
+    """Shares dealt out by hand are those of packets; a list that begins with most of the work is
+    drawn sooner than by contiguous shares."""
+    display_list = make_display_list("sphereflake:depth=1,tessellation=1", width=64, height=64,
+                                     shading="flat").display_list
+    machine = equal_work.planned(display_list, "contiguous")
+    shares = organisation_of(machine).shares(display_list.triangles)
+    by_hand = equal_work.dealt(shares.node, shares.host_order)
+    assert (by_hand.host_place == shares.host_place).all()
+    assert all((by_hand.of_node(node) == shares.of_node(node)).all() for node in range(16))
+    found = equal_work.draw_clocks(display_list)
+    assert found["contiguous"] == round(predict_cycles(machine, display_list).cycles)
+    assert found["equal work, sent by work"] < found["contiguous"]
 
 
 def test_what_nodes_send():
