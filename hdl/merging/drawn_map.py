@@ -96,56 +96,88 @@ class DrawnMap(wiring.Component):
         m = Module()
         m.submodules.map = map_ = self._map
         m.submodules.summary = summary = self._summary
-        m.submodules.map_words = of_summary = SetBits(words=self.summary_words,
-                                                      word_bits=self.word_bits)
-        m.submodules.addresses = of_map = SetBits(words=self.map_words, word_bits=self.word_bits)
+        listing = Listing(m, self, map_, summary)
+        add_changes(m, map_, summary, change=self.change, address=self.address, drawn=self.drawn)
+        m.d.comb += self.settled.eq(self.ready & ~unsettled(map_, summary))
+        listing.add_to(m, ready=self.ready)
+        return m
 
-        clearing = Signal()
-        place = Signal(range(self.map_words + 1))  # of the words that are taken in order
-        left = Signal()  # of the summary
+
+def add_changes(m: Module, map_: BitMemory, summary: BitMemory, *, change: Value, address: Value,
+                drawn: Value) -> None:
+    """Bits of a map are changed as a ``DrawnMap`` says, and those of its summary follow."""
+    m.d.comb += [
+        map_.change.eq(change),
+        Cat(map_.bit, map_.place).eq(address),
+        map_.value.eq(drawn),
+        summary.change.eq(map_.landed),
+        Cat(summary.bit, summary.place).eq(map_.landed_place),
+        summary.value.eq(map_.landed_any),
+    ]
+
+
+def unsettled(map_: BitMemory, summary: BitMemory) -> Value:
+    """A change of an earlier clock is on its way."""
+    return map_.busy | map_.landed | summary.busy
+
+
+class Listing:
+    """Has ``lister`` clear a map and its summary after reset and list them, as a ``DrawnMap`` does;
+    of both only ``takes`` and ``taken`` are used.
+
+    This is no component: it adds its parts and signals to ``m``, the module of ``lister``.
+    """
+
+    def __init__(self, m: Module, lister: wiring.PureInterface, map_: wiring.PureInterface,
+                 summary: wiring.PureInterface):
+        self._lister, self._map, self._summary = lister, map_, summary
+        self._of_summary = SetBits(words=lister.summary_words, word_bits=lister.word_bits)
+        self._of_map = SetBits(words=lister.map_words, word_bits=lister.word_bits)
+        m.submodules.map_words, m.submodules.addresses = self._of_summary, self._of_map
+        #: After a reset, in which no change may come.
+        self.clearing = Signal(name="clearing")
+        # Of the words that are taken in order, and whether it is one of the summary.
+        self._place = Signal(range(lister.map_words + 1), name="place")
+        self._left = Signal(name="left")
+        m.d.comb += self._left.eq(self._place < lister.summary_words)
+
+    def add_to(self, m: Module, *, ready: Signal) -> None:
+        """All else; ``ready``: it neither clears nor lists."""
+        lister, map_, summary, place = self._lister, self._map, self._summary, self._place
+        of_summary, of_map = self._of_summary, self._of_map
         m.d.comb += [
-            left.eq(place < self.summary_words),
-            map_.change.eq(self.change),
-            Cat(map_.bit, map_.place).eq(self.address),
-            map_.value.eq(self.drawn),
-            summary.change.eq(map_.landed),
-            Cat(summary.bit, summary.place).eq(map_.landed_place),
-            summary.value.eq(map_.landed_any),
-            self.settled.eq(self.ready & ~(map_.busy | map_.landed | summary.busy)),
-
-            summary.takes.valid.eq((clearing | self.listing) & left),
+            summary.takes.valid.eq((self.clearing | lister.listing) & self._left),
             summary.takes.payload.eq(place),
-            map_.takes.valid.eq(clearing | of_summary.numbers.valid),
-            map_.takes.payload.eq(Mux(clearing, place, of_summary.numbers.payload)),
+            map_.takes.valid.eq(self.clearing | of_summary.numbers.valid),
+            map_.takes.payload.eq(Mux(self.clearing, place, of_summary.numbers.payload)),
             of_summary.numbers.ready.eq(map_.takes.ready),
-            self.addresses.valid.eq(of_map.numbers.valid),
-            self.addresses.payload.eq(of_map.numbers.payload),
-            of_map.numbers.ready.eq(self.addresses.ready),
+            lister.addresses.valid.eq(of_map.numbers.valid),
+            lister.addresses.payload.eq(of_map.numbers.payload),
+            of_map.numbers.ready.eq(lister.addresses.ready),
         ]
         for taken, found in ((summary.taken, of_summary), (map_.taken, of_map)):
             m.d.comb += [
                 # What is taken to clear it is not looked at.
-                found.words_in.valid.eq(taken.valid & self.listing),
+                found.words_in.valid.eq(taken.valid & lister.listing),
                 found.words_in.payload.eq(taken.payload),
                 taken.ready.eq(found.words_in.ready),
             ]
 
         with m.FSM():
             with m.State("CLEARING"):
-                m.d.comb += clearing.eq(1)
+                m.d.comb += self.clearing.eq(1)
                 m.d.sync += place.eq(place + 1)
-                with m.If(place == self.map_words - 1):
+                with m.If(place == lister.map_words - 1):
                     m.next = "READY"
             with m.State("READY"):
-                m.d.comb += self.ready.eq(1)
+                m.d.comb += ready.eq(1)
                 m.d.sync += place.eq(0)
-                with m.If(self.start):
+                with m.If(lister.start):
                     m.next = "LISTING"
             with m.State("LISTING"):
-                m.d.comb += self.listing.eq(1)
-                with m.If(left & summary.takes.ready):
+                m.d.comb += lister.listing.eq(1)
+                with m.If(self._left & summary.takes.ready):
                     m.d.sync += place.eq(place + 1)
-                with m.If(~(left | summary.taken.valid | map_.taken.valid)
+                with m.If(~(self._left | summary.taken.valid | map_.taken.valid)
                           & of_summary.empty & of_map.empty):
                     m.next = "READY"
-        return m

@@ -4,14 +4,17 @@ from amaranth.hdl import *
 from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from .drawn_map import WORD_BITS, DrawnMap
+from ...golden.specification.configuration import MAXIMUM_WORDS
+from .bit_memory import BitMemory, check_sizes, word_layout
+from .drawn_map import WORD_BITS, DrawnMap, Listing, add_changes, unsettled
 
 __all__ = ["PictureMaps"]
 
 
 class PictureMaps(wiring.Component):
-    """A ``DrawnMap`` of either picture.  Words that are drawn are those of the back one; of the
-    front one words are deleted, and it is listed, whatever happens to the other.
+    """A map of either picture, as a ``DrawnMap`` has one, that are listed in turn.  Words that are
+    drawn are those of the back one; of the front one words are deleted, and it is listed, whatever
+    happens to the other.
 
     Latency and throughput: those of ``DrawnMap``, for both pictures at the same time.
 
@@ -36,9 +39,16 @@ class PictureMaps(wiring.Component):
     settling = DrawnMap.settling
 
     def __init__(self, *, words: int, word_bits: int = WORD_BITS):
-        self._maps = [DrawnMap(words=words, word_bits=word_bits) for _ in range(2)]
+        if not 1 <= words <= MAXIMUM_WORDS:
+            raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
+        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
+        self.map_words = -(-words // word_bits)
+        self.summary_words = -(-self.map_words // word_bits)
+        self._maps, self._summaries = ([BitMemory(words=size, word_bits=word_bits)
+                                        for _ in range(2)]
+                                       for size in (self.map_words, self.summary_words))
         address = range(max(2, words))
         super().__init__({
             "front": In(1),
@@ -56,28 +66,53 @@ class PictureMaps(wiring.Component):
 
     @property
     def storages(self) -> list[memory.Memory]:
-        """The RAMs of both."""
-        return [storage for drawn in self._maps for storage in drawn.storages]
+        """The RAM of the map and that of the summary, of one picture and of the other."""
+        return [bits.storage for pair in zip(self._maps, self._summaries, strict=True)
+                for bits in pair]
 
     def elaborate(self, platform):
         m = Module()
-        for place, drawn in enumerate(self._maps):
-            m.submodules[f"map_{place}"] = drawn
+        free = Signal()  # for deletions
+        map_, summary = (self._front_of(bits[0], name) for bits, name in (
+            (self._maps, "map"), (self._summaries, "summary")))
+        listing = Listing(m, self, map_, summary)
+        for both, front, name in ((self._maps, map_, "map"), (self._summaries, summary, "summary")):
+            self._choose(m, both, front, name, listing.clearing)
+        late = []
+        for place, (own_map, own_summary) in enumerate(zip(self._maps, self._summaries,
+                                                           strict=True)):
             front = self.front == place
-            m.d.comb += [
-                drawn.change.eq(Mux(front, self.hidden & drawn.ready, self.change)),
-                drawn.address.eq(Mux(front, self.hidden_address, self.address)),
-                drawn.drawn.eq(~front & self.drawn),
-                drawn.start.eq(front & self.start),
-                drawn.addresses.ready.eq(self.addresses.ready),
-            ]
-        zero, one = self._maps
-        m.d.comb += [
-            self.ready.eq(Mux(self.front, zero.ready, one.ready)),
-            *(getattr(self, name).eq(Mux(self.front, getattr(one, name), getattr(zero, name)))
-              for name in ("settled", "listing")),
-            self.addresses.valid.eq(zero.addresses.valid | one.addresses.valid),
-            self.addresses.payload.eq(
-                Mux(self.front, one.addresses.payload, zero.addresses.payload)),
-        ]
+            add_changes(m, own_map, own_summary, change=Mux(front, self.hidden & free, self.change),
+                        address=Mux(front, self.hidden_address, self.address),
+                        drawn=~front & self.drawn)
+            late.append(unsettled(own_map, own_summary))
+        m.d.comb += [self.ready.eq(~listing.clearing),
+                     self.settled.eq(free & ~Mux(self.front, late[1], late[0]))]
+        listing.add_to(m, ready=free)
         return m
+
+    def _front_of(self, bits, name):
+        """What is taken of the picture in front, for the listing."""
+        return wiring.Signature({
+            "takes": In(stream.Signature(range(bits.words))),
+            "taken": Out(stream.Signature(word_layout(words=bits.words,
+                                                      word_bits=self.word_bits))),
+        }).create(path=(name,))
+
+    def _choose(self, m, both, front, name, clearing):
+        """Words are taken of the picture in front; of both while these are cleared."""
+        takes, taken = front.takes, front.taken
+        zero, one = both
+        m.d.comb += [
+            takes.ready.eq(Mux(self.front, one.takes.ready, zero.takes.ready)),
+            taken.valid.eq(Mux(self.front, one.taken.valid, zero.taken.valid)),
+            taken.payload.eq(Mux(self.front, one.taken.payload, zero.taken.payload)),
+        ]
+        for place, bits in enumerate(both):
+            m.submodules[f"{name}_{place}"] = bits
+            chosen = self.front == place
+            m.d.comb += [
+                bits.takes.valid.eq(takes.valid & (chosen | clearing)),
+                bits.takes.payload.eq(takes.payload),
+                bits.taken.ready.eq(taken.ready | ~chosen),
+            ]
