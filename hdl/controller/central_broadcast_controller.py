@@ -47,7 +47,8 @@ class CentralBroadcastController(wiring.Component):
     every FIFO has room, another one as ``TriangleSetup`` says.
 
     What is for nodes is only in machines that have them: ``nodes`` where merge cards end nodes,
-    ``lists_full`` with list memories, the next four in chains, ``tree`` in trees.
+    ``lists_full`` with list memories, the next four in chains, ``tree`` in trees, the last three
+    where nodes send to frame units.
 
     Members
     -------
@@ -75,6 +76,12 @@ class CentralBroadcastController(wiring.Component):
         Begin to read the depths of the next scan; the last one has been taken; these depths.
     tree: Out(TreeLines)
         To the tree merge cards.
+    snoop: Out(SnoopLines)
+        To the snoop merge cards, and from the frame units.
+    frame_pictures: Out(PictureLines)
+        Those to the frame units; then ``pictures`` are to the nodes, whose front picture is merged.
+    frame_units: In(id_bits)
+        Number of frame units, from the right end of the ID lines.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):

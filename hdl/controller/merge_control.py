@@ -21,11 +21,12 @@ class ChainControl(NodeControl):
     when the last node shows it, and depths are read as they are scanned."""
 
     opcodes = (Opcode.READ_DEPTH,)
+    shows_at_once = False
 
     def __init__(self, *, configuration: MachineConfiguration):
         super().__init__(configuration=configuration)
         #: Every node showed the new picture a clock ago; so the last one knows what it has sent of
-        #: the one before.
+        #: the one before.  Without a presenter a clock passes anyway.
         self._all_show = Signal(name="all_show")
 
     @property
@@ -35,11 +36,13 @@ class ChainControl(NodeControl):
 
     def add_to(self, m, controller):
         super().add_to(m, controller)
-        m.d.sync += self._all_show.eq(controller.shown == controller.pictures.front)
+        if self.presenter is not None:
+            m.d.sync += self._all_show.eq(controller.shown == controller.pictures.front)
 
     def shown(self, controller):
         # Every node shows the new picture before one draws into what was shown.
-        return self._all_show & (controller.shown == controller.pictures.front)
+        shown = controller.shown == controller.pictures.front
+        return shown if self.presenter is None else self._all_show & shown
 
     def commands(self, m, controller):
         super().commands(m, controller)
@@ -69,6 +72,8 @@ class ChainControl(NodeControl):
 
 class TreeControl(NodeControl):
     """Has a tree merge its steps from the clock on in which all is drawn."""
+
+    merges_at_once = False
 
     def __init__(self, *, configuration: MachineConfiguration):
         super().__init__(configuration=configuration)

@@ -15,8 +15,10 @@ __all__ = ["NodeControl"]
 
 
 class NodeControl(OneNode):
-    """Adds up the nodes at boot, has lists loaded and drawn, and hands what is drawn on to a
-    ``Presenter``: while that has it merged and shown, lists may be changed.
+    """Adds up the nodes at boot, has lists loaded and drawn, and what is drawn merged and shown.
+
+    Where commands can be taken meanwhile, such as those that change lists, a ``Presenter`` does the
+    latter; elsewhere it is what comes next, as where the cage is all one node.
 
     A subclass says how its cards merge; this is for those that have nothing left to merge when all
     is drawn.
@@ -24,7 +26,8 @@ class NodeControl(OneNode):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self.presenter = Presenter()
+        ahead = configuration.list_words or configuration.snoops
+        self.presenter = Presenter() if ahead else None
         #: Memory units of all nodes, and what is wrong with them.
         self.units = Signal(commands.RESPONSE_VALUE_BITS, name="node_units")
         self.unsupported = Signal(name="node_unsupported")
@@ -42,6 +45,10 @@ class NodeControl(OneNode):
     after_nodes = "CHECK_UNITS"
 
     # What of the merging differs from one kind of cards to the next.
+
+    #: ``merged``, and ``shown``, are always high.
+    merges_at_once = True
+    shows_at_once = True
 
     def merged(self, controller):
         """The picture that was drawn last can be scanned."""
@@ -63,8 +70,9 @@ class NodeControl(OneNode):
 
     def add_to(self, m, controller):
         self._count(m, controller)
-        self._present(m, controller)
-        self._take_turns(m, controller)
+        if self.presenter is not None:
+            self._present(m, controller)
+            self._take_turns(m, controller)
 
     def _count(self, m, controller):
         """Nodes' reports as they pass: each must be like the first one."""
@@ -130,10 +138,12 @@ class NodeControl(OneNode):
         return turn
 
     def answers(self, controller):
-        return self._answers
+        return controller.responses if self.presenter is None else self._answers
 
     def in_turn(self, controller, ready):
         """Lists are not what is presented; for all else there is no memory sooner."""
+        if self.presenter is None:
+            return ready
         return ready & (self.is_for_lists(controller) | self.presenter.idle)
 
     def is_for_lists(self, controller):
@@ -153,11 +163,28 @@ class NodeControl(OneNode):
         return Mux(units, Fault.UNITS_UNSUPPORTED, Fault.NODES_DIFFER)
 
     def after_drawn(self, m, controller):
+        if self.presenter is None:
+            return "REPORT_MERGED" if self.merges_at_once else "MERGING"
         m.d.comb += self.presenter.start.eq(self._answers.ready)
         return "COMMAND"
 
+    @property
+    def after_swap(self):
+        return "REPORT_SHOWN" if self.shows_at_once else "SWAPPED"
+
     def show(self, m, controller):
-        """That is the presenter's."""
+        """As a presenter does it, where there is none."""
+        if self.presenter is not None:
+            return
+        if not self.merges_at_once:
+            with m.State("MERGING"), m.If(self.merged(controller)):
+                m.next = "REPORT_MERGED"
+        with m.State("REPORT_MERGED"):
+            controller.respond(m, ResponseKind.MERGED, self.merge_cycles(controller), "SWAP")
+        super().show(m, controller)
+        if not self.shows_at_once:
+            with m.State("SWAPPED"), m.If(self.shown(controller)):
+                m.next = "REPORT_SHOWN"
 
     def commands(self, m, controller):
         if self.configuration.list_words:

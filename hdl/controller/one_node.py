@@ -73,6 +73,9 @@ class OneNode:
         """Inside the state that reports it; returns the next one."""
         return "SWAP"
 
+    #: The state after a swap.
+    after_swap = "REPORT_SHOWN"
+
     def show(self, m, controller):
         """The states from there on."""
         pictures = controller.pictures
@@ -80,6 +83,6 @@ class OneNode:
             # Every pixel of the scan that begins here is fetched after this edge.
             shown = Signal.like(controller.scans, name="shown")
             m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(controller.scans)]
-            m.next = "REPORT_SHOWN"
+            m.next = self.after_swap
         with m.State("REPORT_SHOWN"):
             controller.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")

@@ -65,7 +65,6 @@ class UnitFeed(wiring.Component):
         m.submodules.arbiter = arbiter = self._arbiter
         fragments = self.fragments
         chosen = Signal(self.elements)
-        number = Signal(range(self.elements))  # of the one that is chosen
         move = Signal()
         m.d.comb += [
             move.eq(~fragments.valid | fragments.ready),
@@ -78,22 +77,9 @@ class UnitFeed(wiring.Component):
         with m.If(move):
             m.d.sync += [
                 chosen.eq(arbiter.grant),
-                number.eq(Cat(_any_of(arbiter.grant, bit) for bit in range(len(number)))),
                 fragments.valid.eq(chosen.any()),
-                Value.cast(fragments.payload).eq(
-                    _selected([Value.cast(each) for each in self.given], number)),
+                Value.cast(fragments.payload).eq(reduce(or_, (
+                    Mux(mine, Value.cast(given), 0)
+                    for mine, given in zip(chosen, self.given, strict=True)))),
             ]
         return m
-
-
-def _any_of(grant: Value, bit: int) -> Value:
-    """Some place whose number has that bit is set."""
-    return reduce(or_, (grant[place] for place in range(len(grant)) if place >> bit & 1), C(0))
-
-
-def _selected(values: list[Value], number: Value) -> Value:
-    """The value of that number, by choices between two."""
-    for bit in number:
-        pairs = [values[place:place + 2] for place in range(0, len(values), 2)]
-        values = [pair[0] if len(pair) == 1 else Mux(bit, pair[1], pair[0]) for pair in pairs]
-    return values[0]

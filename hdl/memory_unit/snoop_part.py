@@ -78,8 +78,8 @@ class SnoopPart:
             compares.eq(here),
             depth.eq(heard.depth),
             address.eq(heard.address),
-            sender.delete.eq(compares & (depth <= pixel.depth)),
-            sender.delete_address.eq(address),
+            sender.hidden.eq(compares & (depth <= pixel.depth)),
+            sender.hidden_address.eq(address),
         ]
 
         selected = lines.unit == number
@@ -92,7 +92,7 @@ class SnoopPart:
             sender.depth.eq(pixel.depth),
             sender.color.eq(pixel.color),
 
-            lines.settled.eq(sender.settled & ~compares & ~sender.delete),
+            lines.settled.eq(sender.settled & ~compares & ~sender.hidden),
             sender.start.eq(lines.start),
             lines.valid.eq(sends),
             Value.cast(lines.pixel).eq(Mux(sends, Value.cast(sender.pixels.payload), 0)),

@@ -23,7 +23,7 @@ class PictureMaps(wiring.Component):
         Which one is in front; it changes only while nothing is listed.
     ready: Out(1), change: In(1), address: In(range(words)), drawn: In(1)
         Of the back one, as of ``DrawnMap``.
-    delete: In(1), delete_address: In(range(words))
+    hidden: In(1), hidden_address: In(range(words))
         Delete a word of the front one; not while that is listed.
     settled: Out(1), start: In(1), listing: Out(1), addresses: Out(stream of addresses)
         Of the front one, as of ``DrawnMap``.
@@ -46,8 +46,8 @@ class PictureMaps(wiring.Component):
             "change": In(1),
             "address": In(address),
             "drawn": In(1),
-            "delete": In(1),
-            "delete_address": In(address),
+            "hidden": In(1),
+            "hidden_address": In(address),
             "settled": Out(1),
             "start": In(1),
             "listing": Out(1),
@@ -65,8 +65,8 @@ class PictureMaps(wiring.Component):
             m.submodules[f"map_{place}"] = drawn
             front = self.front == place
             m.d.comb += [
-                drawn.change.eq(Mux(front, self.delete & drawn.ready, self.change)),
-                drawn.address.eq(Mux(front, self.delete_address, self.address)),
+                drawn.change.eq(Mux(front, self.hidden & drawn.ready, self.change)),
+                drawn.address.eq(Mux(front, self.hidden_address, self.address)),
                 drawn.drawn.eq(~front & self.drawn),
                 drawn.start.eq(front & self.start),
                 drawn.addresses.ready.eq(self.addresses.ready),

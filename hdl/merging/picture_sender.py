@@ -54,7 +54,7 @@ class PictureSender(wiring.Component):
         In ascending order of their addresses.
     front: In(1)
         Which picture is sent, the other one is written; only where there are two.
-    delete: In(1), delete_address: In(range(words))
+    hidden: In(1), hidden_address: In(range(words))
         A word of the front one need not be sent; not while there is ``more``; only where there
         are two.
 
@@ -83,7 +83,7 @@ class PictureSender(wiring.Component):
             "depth": In(depth_bits),
             "color": In(COLOR_BITS),
             "pixels": Out(stream.Signature(pixel)),
-            **({"front": In(1), "delete": In(1), "delete_address": In(address)}
+            **({"front": In(1), "hidden": In(1), "hidden_address": In(address)}
                if two_pictures else {}),
         })
 
@@ -126,7 +126,7 @@ class PictureSender(wiring.Component):
         ]
         if self.two_pictures:
             m.d.comb += [getattr(drawn, name).eq(getattr(self, name))
-                         for name in ("front", "delete", "delete_address")]
+                         for name in ("front", "hidden", "hidden_address")]
         m.d.sync += [
             answering.eq(self.reads.valid & self.reads.ready),
             address.eq(self.reads.payload),

@@ -47,6 +47,7 @@ class FrameUnit(wiring.Component):
     pictures: In(PictureLines)
         Those for frame units.
     bus: In(bus_word_layout)
+        What any node says.
     ended: Out(1)
         In the clock in which whatever a node sent is written at last.
 

@@ -3,7 +3,7 @@
 As many processing elements as memory units, of two ports, 512 by 512 pixels; lists are kept in the
 elements, contiguous shares of them.  ``random_bbox16`` has its list once for each element, so that
 all draw the same triangles at the same time, which is the worst for a crossbar; ``right_TL_512``
-has as many large triangles as there are in the list.  Every picture is compared with the golden one.
+has large triangles, four for each of sixteen.  Every picture is compared with the golden one.
 """
 
 from __future__ import annotations

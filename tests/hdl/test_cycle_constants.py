@@ -15,6 +15,8 @@ from wide_machines import wide_machine
 
 from cardcage.golden.cycles.broadcast import LIST_LATENCY, SetupTiming
 from cardcage.golden.cycles.cycle_model import predict_cycles
+from cardcage.golden.cycles.direct.direct_work import CROSSBAR_LATENCY
+from cardcage.golden.cycles.direct.unit_ports import OnePortUnits
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
 from cardcage.golden.cycles.one_port_lanes import LANE_START
 from cardcage.golden.cycles.received_pixels import LANE_CLOCKS
@@ -25,9 +27,10 @@ from cardcage.golden.specification.display_list import DisplayList
 from cardcage.hdl.depth_test.one_port import OnePortDepthTest
 from cardcage.hdl.depth_test.one_port_lane import OnePortLane
 from cardcage.hdl.depth_test.two_ports import TwoPortDepthTest
+from cardcage.hdl.direct.crossbar import Crossbar
 from cardcage.hdl.nodes.node_gate import NodeGate
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
-from cardcage.hdl.processing_element.processing_element import SPANS_LATENCY
+from cardcage.hdl.processing_element.drawing_element import SPANS_LATENCY
 from cardcage.hdl.rasteriser.fragment_stepper import FragmentStepper
 from cardcage.hdl.rasteriser.interpolator import Interpolator
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
@@ -58,6 +61,11 @@ def test_a_lane():
     assert OnePortLane.latency % 2 == 1
     assert OnePortDepthTest.waiting + (OnePortLane.latency - 1) // 2 == LANE_START
     assert OnePortDepthTest.waiting == LANE_CLOCKS
+
+
+def test_a_crossbar():
+    assert Crossbar.latency == CROSSBAR_LATENCY
+    assert OnePortLane.latency == OnePortUnits.latency
 
 
 def test_set_up():

@@ -22,9 +22,9 @@ from .unit_ports import OnePortUnits, TwoPortUnits, UnitPorts
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
-#: From when a fragment is put into a queue until the machine is seen to be done, were it the last
-#: one and taken in the next clock, more than where an element tests it itself.
-FINISH = 2
+#: From when an element has a fragment until its unit looks at it, where nothing is in the way; all
+#: that waits is followed as if it took a clock.
+CROSSBAR_LATENCY = 3
 
 
 class DirectWork:
@@ -60,7 +60,7 @@ class DirectWork:
         crossbar = Crossbar(self._configuration, self._streams, self._firsts[3])
         broadcast = ListBroadcasts() if retained else ControllersBroadcast(nodes, setup)
         return direct_clocks(elements, self._streams, crossbar, self._ports,
-                             broadcast) + self._pipeline.finish + FINISH
+                             broadcast) + self._pipeline.finish + CROSSBAR_LATENCY
 
     @property
     def port_bound(self) -> float:

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from plan_scenes import random_list, triangles
 
+from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.merging.node_picture import merged, node_pictures
+from cardcage.golden.merging.ties import nodes_tie, order_matters
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.shares import Shares
 from cardcage.golden.planning.machine_plan import plan, triangle_bits
@@ -17,7 +19,7 @@ from cardcage.golden.reference.triangle_setup import prepare
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
 
-CAGES = ["3x(PMMC)", "4x(PMT)"]
+CAGES = ["3x(PMMC)", "4x(PMT)", "3x(PMS)F"]
 
 
 def levels(depths, seed=1, count=40):
@@ -62,6 +64,58 @@ def test_an_order_is_kept_where_nodes_tie(cards, packet, depths):
     assert reason in row.reason
     assert not [each for each in planned.lines if each.item == "list words"]
     assert fitted(machine, display_list).triangles == display_list.triangles
+
+
+@pytest.mark.parametrize("cards", ["3xP D 4xM", "PPDM", "PDMM"])
+@pytest.mark.parametrize("packet", [1, 3, 100, "contiguous"])
+@pytest.mark.parametrize("depths", [1, 3, 4000])
+def test_an_order_has_the_node_where_fragments_of_nodes_meet(cards, packet, depths):
+    display_list = levels(depths)
+    planned = plan(display_list, cards=cards, packet=packet)
+    machine = planned.configuration
+    shares = organisation_of(machine).shares(display_list.triangles)
+    node_bits = machine.node_order_bits
+    assert node_bits == {"3xP D 4xM": 2, "PPDM": 1, "PDMM": 0}[cards]
+    ties, matters = nodes_tie(display_list, shares), order_matters(display_list, shares)
+    assert ties >= matters and (not ties or depths < 4000)
+    assert machine.order_bits == (
+        0 if not ties else node_bits + (shares.order_bits if matters else 0))
+    merged_picture, _ = merge_cage(machine, display_list)
+    for name in ("color", "depth", "winner"):
+        np.testing.assert_array_equal(getattr(merged_picture.picture, name),
+                                      getattr(exact.draw(display_list), name))
+    row = line(planned, "order bits")
+    assert (row.value, row.full) == (str(machine.order_bits), str(planned.full.order_bits))
+    # What is broadcast of a triangle has its round, and no node keeps another one's number.
+    assert row.saves == triangle_bits(planned.full) - triangle_bits(
+        replace(planned.full, order_bits=machine.order_bits))
+    if node_bits and ties:
+        assert f"in any order: {node_bits} for the node" in row.reason
+        assert ("rounds of a packet" in row.reason) == matters
+    elif node_bits:
+        assert row.reason == "no two nodes tie where they are seen"
+    assert fitted(machine, display_list).triangles == display_list.triangles
+
+
+@pytest.mark.parametrize(("order_bits", "packet", "message"), [
+    (0, 1, "order_bits 6 since nodes tie, the machine is built for 0: take --packet contiguous, or "
+           "export a machine for this list"),
+    (0, "contiguous", "order_bits 2 since nodes tie, the machine is built for 0: export a machine "
+                      "for this list"),
+    (2, 1, "order_bits 6 since nodes tie, the machine is built for 2: take --packet contiguous, or "
+           "export a machine for this list"),
+    (5, 1, "order_bits 6 for 14 rounds, the machine is built for 5: take --packet contiguous, or "
+           "export a machine for this list")])
+def test_orders_too_narrow_for_a_direct_merge(order_bits, packet, message):
+    display_list = levels(1)
+    machine = wide(display_list, cards="3xP D MM", order_bits=order_bits, packet=packet)
+    with pytest.raises(InputError, match=f"^display list: {message}$"):
+        fitted(machine, display_list)
+    for enough in (6, 16):
+        fitting = replace(machine, order_bits=enough)
+        assert fitted(fitting, display_list) is display_list
+    assert fitted(replace(machine, order_bits=2, packet="contiguous"),
+                  display_list) is display_list
 
 
 def test_other_lines_are_those_of_one_node():
@@ -147,6 +201,8 @@ MANY = triangles(*[[[200, 200], [250, 210], [212, 250]]] * 3,
                                    "for the largest share; leave it out, or take 1[0-4]$"),
     (levels(1), {"cards": "2x(PMM)", "retain": True},
      r"^retain: lists are kept in nodes, and .* has no merge card; end its nodes with one, as in"),
+    (MANY, {"cards": "PPDMM"}, "^packet: 1 makes 65,537 rounds, at most 32,768 keep ties between "
+                               "nodes in order; take 3 at least, or contiguous$"),
     (MANY, {"cards": "2x(PMC)"}, "^packet: 1 makes 65,537 rounds, at most 65,536 keep ties between "
                                  "nodes in order; take 2 at least, or contiguous$"),
 ])
@@ -169,9 +225,9 @@ def test_a_share_larger_than_a_list_memory(monkeypatch):
         plan(levels(1), cards="3x(PMMC)", retain=True)
 
 
-def wide(display_list, **fields):
+def wide(display_list, cards="3x(PMMC)", **fields):
     return MachineConfiguration(
-        "3x(PMMC)", display_list.width, display_list.height, sub_bits=display_list.sub_bits,
+        cards, display_list.width, display_list.height, sub_bits=display_list.sub_bits,
         depth_bits=display_list.depth_bits, **fields)
 
 

@@ -43,7 +43,7 @@ class Pictures(Agent):
         ctx.set(dut.front, self.front)
         self.begun = self.begun or (ctx.get(dut.ready) and ctx.get(dut.settled))
         listing = self.started is not None
-        self.change = self.delete = None
+        self.change = self.hidden = None
         if self.begun and pick.random() < self.drawn:
             self.change = pick.randrange(dut.words), pick.random() < 0.9
         start = False
@@ -51,18 +51,18 @@ class Pictures(Agent):
             if self.left:
                 self.left -= 1
                 if self.words[self.front] and pick.random() < 0.7:
-                    self.delete = pick.choice(sorted(self.words[self.front]))
+                    self.hidden = pick.choice(sorted(self.words[self.front]))
                 else:
-                    self.delete = pick.randrange(dut.words)
+                    self.hidden = pick.randrange(dut.words)
             else:
                 start = ctx.get(dut.settled)
         address, drawn = self.change or (pick.randrange(dut.words), pick.getrandbits(1))
         ctx.set(dut.change, self.change is not None)
         ctx.set(dut.address, address)
         ctx.set(dut.drawn, drawn)
-        ctx.set(dut.delete, self.delete is not None)
-        ctx.set(dut.delete_address,
-                pick.randrange(dut.words) if self.delete is None else self.delete)
+        ctx.set(dut.hidden, self.hidden is not None)
+        ctx.set(dut.hidden_address,
+                pick.randrange(dut.words) if self.hidden is None else self.hidden)
         ctx.set(dut.start, start)
         if start:
             self.started = self.clock
@@ -74,8 +74,8 @@ class Pictures(Agent):
             address, drawn = self.change
             back = self.words[1 - self.front]
             (back.add if drawn else back.discard)(address)
-        if self.delete is not None:
-            self.words[self.front].discard(self.delete)
+        if self.hidden is not None:
+            self.words[self.front].discard(self.hidden)
         self.clock += 1
 
     def ended(self):

@@ -117,6 +117,7 @@ def cage(cards, **options):
     ("PMMT PMMT PMT", [2, 2, 1], Fault.NODES_DIFFER),
     ("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED),
     ("PMMC PC PMMC", [2, 0, 2], Fault.UNITS_UNSUPPORTED),
+    ("PPDMMM", [3, 3], Fault.UNITS_UNSUPPORTED),
 ])
 def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
     """The cage is refused: it says so at boot and to every command, and does not hang."""
@@ -141,6 +142,7 @@ def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
     ("PMMMMC PMMMMC", (8, 8)),  # of five nodes
     ("PMMT PPMMT PMMPT", (8, 4)),  # and two units of each
     ("PMC PMC PMC", (4, 4)),
+    ("PPPDMM", (8, 4)),
 ])
 def test_whole_nodes_pulled_out(cards, resolution):
     """Those that are left are numbered anew and draw all."""

@@ -52,6 +52,26 @@ def test_frames_one_after_another():
     assert shown < frame.video[0, 0, 0] <= shown + 5
 
 
+def test_counters_of_elements_that_share_all_units():
+    cage = MachineConfiguration("PPDMM", 4, 4)
+    counters = [(ResponseKind.FRAGMENTS, 1), (ResponseKind.BUSY, 2), (ResponseKind.FRAGMENTS, 3),
+                (ResponseKind.BUSY, 4), (ResponseKind.TAKEN, 5), (ResponseKind.FOLLOWED, 6),
+                (ResponseKind.TAKEN, 7), (ResponseKind.FOLLOWED, 8)]
+    organisation = organisation_of(cage)
+    owed = owed_to(organisation, commands.command(Opcode.READ_COUNTERS))
+    assert [kind for kind, _ in owed] == [kind for kind, _ in counters]
+    shown = [(ResponseKind.FRAME_DRAWN, 30), (ResponseKind.MERGED, 30),
+             (ResponseKind.FRAME_SHOWN, 1)]
+    assert [kind for kind, _ in owed_to(organisation, commands.command(Opcode.FRAME_END))] == [
+        kind for kind, _ in shown]
+    boot = [(kind, value or 0) for kind, value in owed_at_boot(organisation)]
+    depths = [(ResponseKind.DEPTH, word) for word in range(16)]
+    frame = Answers(cage, run_of([*boot, *shown, *depths, *counters])).frame(0, reading=0)
+    assert [tuple(vars(work).values()) for work in frame.work] == [(0, 0, 2, 1, 2), (1, 0, 2, 3, 4)]
+    assert (frame.taken, frame.followed, frame.sent) == ([5, 7], [6, 8], [1, 3])
+    assert (frame.owned, frame.total, frame.merge_cycles) == (2, 2, 30)
+
+
 def test_a_fault_and_a_wrong_resolution():
     with pytest.raises(MachineError, match=r"fault 2 \(UNITS_UNSUPPORTED\)"):
         Answers(CAGE, run_of([*BOOT[:3], (ResponseKind.ERROR, Fault.UNITS_UNSUPPORTED)]))
@@ -62,7 +82,13 @@ def test_a_fault_and_a_wrong_resolution():
 
 @pytest.mark.parametrize("configuration", [
     CAGE, MachineConfiguration("PMM", 4, 4, setup="hardware"),
-    MachineConfiguration("PMMM", 4, 4, words=16, allow_orphans=True)])
+    MachineConfiguration("PMMM", 4, 4, words=16, allow_orphans=True),
+    MachineConfiguration("PMMC PMPMC", 4, 4), MachineConfiguration("2x(PMS)FF", 4, 4),
+    MachineConfiguration("PMMS MPMS FFFF", 4, 4, allow_orphans=True),
+    MachineConfiguration("2x(PMS)FFF", 4, 4, allow_orphans=True),
+    MachineConfiguration("PPPDMM", 4, 4), MachineConfiguration("PDMMMM", 4, 4, words=2),
+    MachineConfiguration("PPDMMM", 4, 4, words=16, allow_orphans=True)],
+    ids=lambda configuration: configuration.cards)
 def test_what_is_owed_comes(configuration):
     organisation = organisation_of(configuration)
     words = [commands.command(opcode) for opcode in (

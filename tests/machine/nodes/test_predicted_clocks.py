@@ -1,0 +1,87 @@
+"""What nodes on a bus take to merge, and elements that share all units to draw: by the machine and
+by the cycle model, whose traffic is the machine's to the pixel."""
+
+from __future__ import annotations
+
+import pytest
+from node_frames import CLEAR_LISTS, compiled, frames, immediate, loads, redrawn
+from wide_machines import wide_machine
+
+from cardcage.golden.cycles.cycle_model import predict_cycles
+from cardcage.golden.cycles.merge_clocks import predict_merge
+from cardcage.golden.merging.cage import merge_cage
+from cardcage.golden.scene_display_list import make_display_list
+
+#: Of the clocks to merge, or to draw.
+ACCURACY = 0.02
+
+BUSES = {
+    "units with one port": ("4x(PMMS)FF", {"memory_ports": 1}),
+    "a run of the list for each of five": ("5x(PMS)F", {"memory_ports": 2,
+                                                        "packet": "contiguous"}),
+    "eight units": ("2x(PMMMMMMMMS)FF", {"memory_ports": 2}),
+}
+
+CROSSBARS = {
+    "four for two": ("4xP D 2xM", {"memory_ports": 2, "queue": 2}),
+    "one queue for each element": ("4xP D 4xM", {"memory_ports": 2, "queue": "element"}),
+    "more units than elements": ("3xP D 8xM", {"memory_ports": 2, "packet": "contiguous"}),
+    # Nobody tells the model where the scan is, so it must not have much of a port.
+    "units with one port": ("4xP D 4xM", {"memory_ports": 1, "clocks_per_pixel": 6}),
+}
+
+
+def scenes():
+    """Of few large triangles and many small ones by turns."""
+    for seed, (n, size) in enumerate(((500, 8), (120, 24), (150, 12))):
+        yield make_display_list(f"random:n={n},size={size},seed={seed}", width=64,
+                                height=64).display_list
+
+
+def machine_of(cards, listed, **options):
+    return wide_machine(listed, cards=cards, fraction_bits=44, order_bits=14,
+                        **{"clocks_per_pixel": 2} | options)
+
+
+def accuracy(predicted, clocks):
+    print(f"{clocks} clocks, predicted {predicted:.0f}, {predicted / clocks - 1:+.2%}")
+    return abs(predicted / clocks - 1)
+
+
+@pytest.mark.parametrize("cage", BUSES)
+def test_a_merge_on_a_bus(cage, record_property):
+    cards, options = BUSES[cage]
+    lists = list(scenes())
+    machine = machine_of(cards, lists[0], **options)
+    drawn = frames(machine, [(immediate(machine, listed), machine, listed) for listed in lists],
+                   compiled())
+    errors = []
+    for simulation, listed in zip(drawn, lists, strict=True):
+        clocks = simulation.merge_cycles - simulation.draw_cycles
+        pixels = merge_cage(machine, listed)[1].pixels
+        assert clocks <= 1.05 * pixels + machine.nodes * (machine.words / 4096 + 64)
+        errors.append(accuracy(predict_merge(machine, listed), clocks))
+    record_property("measured", f"{cards}, {cage}: merges on a bus are predicted within "
+                                f"{max(errors):.1%}")
+    assert max(errors) <= ACCURACY
+
+
+@pytest.mark.parametrize("cage", CROSSBARS)
+def test_drawing_through_a_crossbar(cage, record_property):
+    cards, options = CROSSBARS[cage]
+    lists = list(scenes())
+    machine = machine_of(cards, lists[0], list_words=500, **options)
+    ways = [(retained, listed) for listed in lists for retained in (False, True)]
+    drawn = frames(machine, [
+        ([CLEAR_LISTS, *loads(machine, listed), *redrawn(machine, listed)] if retained
+         else immediate(machine, listed), machine, listed) for retained, listed in ways],
+        compiled())
+    errors = []
+    for simulation, (retained, listed) in zip(drawn, ways, strict=True):
+        assert list(simulation.taken) == merge_cage(machine, listed)[1].taken.sum(axis=0).tolist()
+        predicted = predict_cycles(machine, listed, retained=retained).cycles
+        errors.append(accuracy(predicted, simulation.draw_cycles))
+        assert simulation.merge_cycles == simulation.draw_cycles
+    record_property("measured", f"{cards}, {cage}: drawing through a crossbar is predicted within "
+                                f"{max(errors):.1%}")
+    assert max(errors) <= ACCURACY
