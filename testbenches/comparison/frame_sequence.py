@@ -165,7 +165,7 @@ class FrameSequence:
         if configuration.list_words:
             return self._opcodes.index(Opcode.DRAW_LISTS)
         organisation = organisation_of(configuration)
-        sent = place = organisation.shares(self._display_list.triangles).host_place
+        sent = place = organisation.shares(self._display_list).host_place
         if configuration.setup == "host":  # what the host's set-up leaves out is not sent
             fitting = fitted(configuration, self._display_list)
             boxes = outline(fitting, Grid.of(fitting, **organisation.resolution.shifts)).boxes
