@@ -104,7 +104,7 @@ class Interlace:
     @property
     def diagonal_step(self) -> int:
         """Units by which each row is moved from the one above: an odd number near 5/8 of all, with
-        which triangles of few pixels a row meet least (``docs/organisations.md``)."""
+        which small triangles seldom meet (``docs/organisations.md``)."""
         return (5 * self.units // 8) | 1 if self.diagonal else 0
 
     @property
