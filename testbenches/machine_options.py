@@ -26,6 +26,9 @@ from ..golden.specification.fixed_point import check_max_error, on_screen_fracti
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
 DEFAULT_SIZE = {"width": 64, "height": 64}
+#: How nodes share the triangles: the shortest frames of all that a host knows how to do
+#: (docs/figures-cox-hanrahan.md).
+DEFAULT_PACKET: Packet = "work"
 
 ShadingChoice = Literal["auto", "flat", "gouraud"]
 SetupChoice = Literal["host", "small", "fast"]
@@ -56,7 +59,8 @@ class MachineOptions:
     ``skew``              units of a processing element alternate along its rows, too
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
-    ``packet``            triangles of a packet for each node, or ``"contiguous"``
+    ``packet``            triangles of a packet for each node, ``"contiguous"`` or ``"work"``, which
+                          cages of nodes have where nothing is said
     ``queue``             fragments that can wait from each processing element to each memory unit,
                           or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
@@ -108,6 +112,8 @@ class MachineOptions:
                                  "--fraction-bits")
         if self.max_error is not None or self.fraction_bits == "exact":
             settled["fraction_bits"] = None  # in place of the preset's
+        if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
+            settled["packet"] = DEFAULT_PACKET
         if self.setup is not None:
             settled |= SETUPS[self.setup]
         if self.retain and merge_card(parse_cards(settled["cards"])) is None:

@@ -153,7 +153,7 @@ def _sending_order(configuration: MachineConfiguration, display_list: DisplayLis
 
     Lists that are retained are followed side by side: triangle by triangle of the display list.
     """
-    shares = organisation_of(configuration).shares(display_list.triangles)
+    shares = organisation_of(configuration).shares(display_list)
     place = np.arange(shares.triangles) if retained else shares.host_place
     order = np.argsort(place[primitive])
     return place[primitive][order], shares.node[primitive][order], order

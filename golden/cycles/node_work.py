@@ -99,6 +99,6 @@ class NodeWork:
 def share_of_node(configuration: MachineConfiguration, display_list: DisplayList,
                   node: int) -> tuple[Int64, DisplayList]:
     """The numbers of a node's triangles, and a list of these."""
-    shares = organisation_of(configuration).shares(display_list.triangles)
+    shares = organisation_of(configuration).shares(display_list)
     own = shares.of_node(node)
     return own, display_list if shares.nodes == 1 else display_list.chosen(own)

@@ -31,7 +31,7 @@ def cage_pictures(configuration: MachineConfiguration,
     exactly."""
     organisation = organisation_of(configuration)
     return node_pictures(
-        display_list, organisation.shares(display_list.triangles),
+        display_list, organisation.shares(display_list),
         order_bits=configuration.round_bits, shading=configuration.shading,
         **organisation.resolution.shifts)
 

@@ -51,7 +51,7 @@ def merge_direct(pictures: Sequence[NodePicture], node_order_bits: int) -> NodeP
 
 def direct_traffic(organisation: Organisation, display_list: DisplayList) -> DirectTraffic:
     """Who sends how many fragments to which unit, hidden ones too."""
-    node = organisation.shares(display_list.triangles).node
+    node = organisation.shares(display_list).node
     units, resolution = organisation.memory_units, organisation.resolution
     counts = np.zeros(organisation.nodes * units, np.int64)
     triangles = Triangles.of(display_list, Grid.of(display_list, **resolution.shifts))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..specification.commands import Fault
 from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
 from .shares import Shares
 
 Bool = NDArray[np.bool_]
@@ -231,9 +232,9 @@ class Organisation(ABC):
         """Memory units of a node, where all have as many."""
         return self.node_units[0]
 
-    def shares(self, triangles: int) -> Shares:
-        """Which node draws each triangle of a display list of so many."""
-        return Shares(self.nodes, triangles, self.configuration.packet)
+    def shares(self, display_list: DisplayList) -> Shares:
+        """Which node draws each triangle of a display list."""
+        return Shares.of(display_list, self.nodes, self.configuration.packet)
 
     @property
     def owned_units(self) -> int:

@@ -54,7 +54,7 @@ class NodeNeeds:
 
     @cached_property
     def shares(self) -> Shares:
-        return organisation_of(self._configuration).shares(self._display_list.triangles)
+        return organisation_of(self._configuration).shares(self._display_list)
 
     def _draw(self, display_list: DisplayList) -> Picture:
         """As the machine does: where its depths err a little so do its ties.  The winners count,

@@ -34,8 +34,9 @@ MAXIMUM_TAG_BITS = 6
 SNOOP_TAG_BITS = 3  # the least where a picture is merged as well
 MAXIMUM_ORDER_BITS = 16  # 65,536 rounds of a packet for each node
 
-#: Triangles in a packet, or one packet for each node.
-Packet = int | Literal["contiguous"]
+#: Triangles in a packet, or one packet for each node: of as many triangles, or of as much work.
+Packet = int | Literal["contiguous", "work"]
+ONE_PACKET_EACH = ("contiguous", "work")
 MAXIMUM_PACKET = (1 << 31) - 1
 
 #: Fragments that can wait from a processing element to each memory unit, or one queue for all.
@@ -94,7 +95,8 @@ class MachineConfiguration(Cage):
     Where there are nodes, that each draw a share of the triangles:
 
     ``packet``         triangles that follow one another in the list and go to one node; 1 is round
-                       robin, ``"contiguous"`` gives each node one run of the list
+                       robin, ``"contiguous"`` gives each node one run of the list, of as many
+                       triangles, ``"work"`` one of as much work (``organisations.shares``)
     ``order_bits``     beside a pixel's depth, which keep ties between nodes in the list's order:
                        its round, and where fragments meet in memory its node below it.  None means
                        as many as any list may need: for contiguous shares there are no rounds
@@ -170,7 +172,7 @@ class MachineConfiguration(Cage):
         if self.maximum_nodes == 0:
             fix("maximum_nodes", self.nodes)
         if self.order_bits is None:
-            shared = self.nodes > 1 and self.packet != "contiguous"
+            shared = self.nodes > 1 and self.packet not in ONE_PACKET_EACH
             fix("order_bits", MAXIMUM_ORDER_BITS if shared else self.node_order_bits)
         for name, (low, high) in RANGES.items():
             check_whole(name, getattr(self, name), low, high)
@@ -214,12 +216,12 @@ class MachineConfiguration(Cage):
                              f"{self.width}x{self.height}")
 
     def _check_packet(self) -> None:
-        if self.packet == "contiguous":
+        if self.packet in ONE_PACKET_EACH:
             return
         try:
             check_whole("packet", self.packet, 1, MAXIMUM_PACKET)
         except InputError as error:
-            raise InputError(f"{error}, nor contiguous") from None
+            raise InputError(f"{error}, nor contiguous, nor work") from None
 
     def _check_nodes(self) -> None:
         if not self.nodes <= self.maximum_nodes:

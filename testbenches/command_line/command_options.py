@@ -14,12 +14,13 @@ from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import (
     MAXIMUM_PACKET,
     MAXIMUM_WORDS,
+    ONE_PACKET_EACH,
     QUEUE_RANGE,
     RANGES,
 )
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
-from ..machine_options import SETUPS
+from ..machine_options import DEFAULT_PACKET, SETUPS
 
 
 class Size(click.ParamType):
@@ -41,18 +42,19 @@ class Size(click.ParamType):
 
 
 class NumberOr(click.ParamType):
-    """A whole number from ``low`` to ``high``, or ``word``."""
+    """A whole number from ``low`` to ``high``, or one of ``words``."""
 
-    def __init__(self, word: str, low: int, high: int) -> None:
-        self.name = f"N|{word}"
-        self.word, self.low, self.high = word, low, high
+    def __init__(self, *words: str, low: int, high: int) -> None:
+        self.name = "|".join(["N", *words])
+        self.words, self.low, self.high = words, low, high
 
     def convert(self, value: Any, param: click.Parameter | None,
                 ctx: click.Context | None) -> int | str:
-        if value == self.word:
-            return self.word
+        if value in self.words:
+            return str(value)
         if not re.fullmatch(r"[0-9]{1,10}", value) or not self.low <= int(value) <= self.high:
-            self.fail(f"{value!r} is neither '{self.word}' nor a whole number from {self.low} to "
+            named = ", ".join(f"'{word}'" for word in self.words)
+            self.fail(f"{value!r} is neither {named} nor a whole number from {self.low} to "
                       f"{self.high}", param, ctx)
         return int(value)
 
@@ -91,9 +93,9 @@ class Color(click.ParamType):
                       "as in #1c2030", param, ctx)
 
 
-FRACTION_BITS = NumberOr("exact", 0, MAX_FRACTION_BITS)
-PACKET = NumberOr("contiguous", 1, MAXIMUM_PACKET)
-QUEUE = NumberOr("element", *QUEUE_RANGE)
+FRACTION_BITS = NumberOr("exact", low=0, high=MAX_FRACTION_BITS)
+PACKET = NumberOr(*ONE_PACKET_EACH, low=1, high=MAXIMUM_PACKET)
+QUEUE = NumberOr("element", low=QUEUE_RANGE[0], high=QUEUE_RANGE[1])
 
 
 class Several(click.ParamType):
@@ -168,9 +170,10 @@ _VIEW_OPTIONS = (
 )
 
 _NODE_OPTIONS = (
-    click.option("--packet", type=PACKET, metavar="N|contiguous",
+    click.option("--packet", type=PACKET, metavar=PACKET.name,
                  help="Where there are merge cards: how many triangles that follow one another go "
-                 "to one node, or one run of the list for each node.  [default: 1]"),
+                 "to one node, or one run of the list for each node: contiguous, of as many "
+                 f"triangles, or work, of as much work.  [default: {DEFAULT_PACKET}]"),
     click.option("--queue", type=QUEUE, metavar="N|element",
                  help="Where nodes merge directly (D): how many fragments can wait from each "
                  "processing element to each memory unit, or one queue for each element.  "

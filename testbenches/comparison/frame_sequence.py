@@ -60,8 +60,9 @@ class Clocks:
 
 @dataclass(frozen=True)
 class Latency:
-    """Of the last triangle in the list of which a pixel is seen, in the last frame, in clocks from
-    when its command is taken, or the one that has it drawn from its list, ``DRAW_LISTS``.
+    """Of the last triangle in the list of which a pixel is seen, in clocks from when its command is
+    taken, or the one that has it drawn from its list, ``DRAW_LISTS``; in the last frame, or, where
+    frames are drawn while others wait to be shown, in the first one, which waits for none.
 
     ``triangle``  its number
     ``pixel``     x, y on the video output: its first one that is seen, in the order of the scan
@@ -109,11 +110,11 @@ class FrameSequence:
         merges = organisation_of(self._configuration).merges
         return self._cycles_of(ResponseKind.MERGED if merges else ResponseKind.FRAME_DRAWN)
 
-    def _taken(self, command: int) -> int:
-        """When the machine took a command of the last frame, by its place in the first one."""
+    def _taken(self, command: int, frame: int) -> int:
+        """When the machine took a command of a frame, by its place in the first one."""
         assert self._run.accepted is not None
-        frame = len(self._opcodes) - self._start
-        return int(self._run.accepted[command + (FRAMES - 1) * frame])
+        commands_of_frame = len(self._opcodes) - self._start
+        return int(self._run.accepted[command + frame * commands_of_frame])
 
     @property
     def shown_scans(self) -> list[Scan]:
@@ -150,11 +151,12 @@ class FrameSequence:
         row, column = np.argwhere(golden.winner == triangle)[0].tolist()
         _, _, x_shift, y_shift = organisation_of(self._configuration).resolution
         x, y = column << x_shift, row << y_shift
-        taken = self._taken(self._command_of(triangle))
-        shown = self._cycles_of(ResponseKind.FRAME_SHOWN)[-1]
+        frame = 0 if self._configuration.snoops else FRAMES - 1
+        taken = self._taken(self._command_of(triangle), frame)
+        shown = self._cycles_of(ResponseKind.FRAME_SHOWN)[frame]
         scan = next(scan.cycle for scan in self._run.scans if scan.cycle > shown)
         pixels = y * self._configuration.timing.horizontal_total + x
-        return Latency(triangle, (x, y), merged=self._merged[-1] - taken,
+        return Latency(triangle, (x, y), merged=self._merged[frame] - taken,
                        pins=scan + pixels * self._configuration.clocks_per_pixel - taken)
 
     def _command_of(self, triangle: int) -> int:
@@ -163,7 +165,7 @@ class FrameSequence:
         if configuration.list_words:
             return self._opcodes.index(Opcode.DRAW_LISTS)
         organisation = organisation_of(configuration)
-        sent = place = organisation.shares(self._display_list.triangles).host_place
+        sent = place = organisation.shares(self._display_list).host_place
         if configuration.setup == "host":  # what the host's set-up leaves out is not sent
             fitting = fitted(configuration, self._display_list)
             boxes = outline(fitting, Grid.of(fitting, **organisation.resolution.shifts)).boxes

@@ -26,7 +26,11 @@ from ...golden.specification.card_order import (
     merge_card,
     parse_cards,
 )
-from ...golden.specification.configuration import MachineConfiguration, Packet
+from ...golden.specification.configuration import (
+    ONE_PACKET_EACH,
+    MachineConfiguration,
+    Packet,
+)
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..frames.setup_timing import setup_timing
@@ -73,7 +77,7 @@ def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> Display
     before: every node draws as much as one did of the list alone, all over the picture.
     """
     thickness = ((1 << display_list.depth_bits) - 1) // copies
-    step = 0 if packet == "contiguous" else packet
+    step = 0 if packet in ONE_PACKET_EACH else packet
 
     def copy(number: int) -> DisplayList:
         turned = display_list.chosen(np.roll(np.arange(display_list.triangles), number * step))

@@ -54,7 +54,7 @@ def _triangle_words(configuration: MachineConfiguration, display_list: DisplayLi
                     fraction_bits: int | None) -> Sequence[int]:
     """A command for each triangle, in the order in which the host sends them."""
     fitting = fitted(configuration, display_list)
-    shares = organisation_of(configuration).shares(display_list.triangles)
+    shares = organisation_of(configuration).shares(display_list)
     share = ({"node": shares.node, "round": shares.round} if configuration.node_bits
              else triangle_words.NO_SHARE)
     if configuration.setup == "hardware" and fraction_bits is None:

@@ -47,12 +47,27 @@ _CHAIN = "hdl/nodes/chain_merge.py"
 _GATE = "hdl/nodes/node_gate.py"
 _LIST = "hdl/nodes/list_memory.py"
 _GENERATOR = "hdl/video/video_scan_generator.py"
+_SNOOP = "hdl/memory_unit/snoop_part.py"
+_SNOOP_TEST = "tests/hdl/memory_unit/test_snoop_part.py"
 _MAP_TEST = "tests/hdl/merging/test_drawn_map.py"
 _LIST_TEST = "tests/hdl/nodes/test_list_memory.py"
 _GATE_TEST = "tests/hdl/nodes/test_node_gate.py"
 _TIES = "tests/hdl/nodes/test_chain_merge.py::test_ties"
 _CROSSBAR = "hdl/direct/crossbar.py"
 _CROSSBAR_TEST = "tests/hdl/direct/test_crossbar.py"
+#: Frame units that ask whether a word has been written since the pictures changed places.
+_KEEPS_FIRST = """\
+        self._write(m, number)
+        seen, front = Signal(self.memory.words), Signal()
+        address = access.write_address
+        m.d.sync += front.eq(pictures.front)
+        with m.If(access.write):
+            m.d.sync += seen.bit_select(address, 1).eq(1)
+        with m.If(front != pictures.front):
+            m.d.sync += seen.eq(0)
+        with m.If(seen.bit_select(address, 1)):
+            m.d.comb += access.write.eq(0)
+"""
 _COMPARED = "Value.cast(self.higher) < Value.cast(self.lower)"
 _PASSED = "            leaving.pixel.eq(arriving.pixel),\n        ]\n"
 
@@ -149,6 +164,34 @@ THOUGHTS = (
             "hdl/controller/merge_control.py",
             "self._all_show & (controller.shown == controller.pictures.front)", "C(1)",
             "tests/machine/nodes/test_many_nodes.py"),
+    Thought("of two as near the snooped one stays", _SNOOP, "depth <= pixel.depth",
+            "depth < pixel.depth", f"{_SNOOP_TEST}::test_ties_are_deleted"),
+    Thought("nothing that is heard hides anything", _SNOOP, "depth <= pixel.depth", "C(0)",
+            f"{_SNOOP_TEST}::test_ties_are_deleted"),
+    Thought("whatever is heard hides what a node has", _SNOOP, "depth <= pixel.depth", "C(1)",
+            f"{_SNOOP_TEST}::test_ties_are_deleted"),
+    Thought("what is to be sent is listed before the last word is deleted", _SNOOP,
+            "sender.settled & ~compares & ~sender.hidden", "C(1)", _SNOOP_TEST),
+    Thought("the map keeps what was hidden", "hdl/merging/picture_maps.py",
+            "self.hidden & drawn.ready", "C(0)", "tests/hdl/merging/test_picture_maps.py"),
+    Thought("a node sends while the one before it does", "hdl/snooping/snoop_merge.py",
+            "ended == self.left.node", "ended + 1 >= self.left.node",
+            "tests/hdl/snooping/test_snoop_merge.py"),
+    Thought("frame units keep the first of two pixels", "hdl/snooping/frame_unit.py",
+            "        self._write(m, number)\n", _KEEPS_FIRST,
+            "tests/hdl/snooping/test_frame_unit.py"),
+    Thought("a frame unit takes an address to be a row too far up", "hdl/mapping/unit_pixel.py",
+            ">= 1 << shift:", ">= 4 << shift:", "tests/hdl/mapping/test_unit_pixel.py"),
+    Thought("a frame is merged while the one before still is", "hdl/controller/snoop_control.py",
+            "self._waiting & presenter.idle", "self._waiting",
+            "tests/hdl/controller/test_snoop_control.py"),
+    Thought("a tag is free while a frame unit shows it", "hdl/controller/frame_tags.py",
+            "*(self.frame_color if self.frame_units else [])", "",
+            "tests/hdl/controller/test_frame_tags.py"),
+    Thought("depths are always of the picture that is drawn into",
+            "hdl/controller/snoop_control.py", "self._reading & ~self._drawing", "C(0)",
+            "tests/machine/nodes/test_snooped_frames.py"
+            "::test_depths_are_those_of_the_picture_drawn_last"),
     Thought("an arbiter that starves", "hdl/direct/round_robin.py",
             "Mux(ahead.any(), _lowest(ahead), _lowest(requests))", "_lowest(requests)",
             "tests/hdl/direct/test_round_robin.py"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
+from typing import TypeAlias
 
 from cardcage.golden.cycles.frame_clocks import most_frame_clocks
 from cardcage.golden.organisations.organisation_of import organisation_of
@@ -17,6 +19,12 @@ from cardcage.testbenches.frames.compare import compare
 from cardcage.testbenches.frames.conversation import Owed, owed_at_boot, owed_to
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
+
+#: Kind, value and cycle.
+Response: TypeAlias = tuple[ResponseKind, int, int]
+
+#: What, where nodes merge on a bus, may be said of a frame while later commands are answered.
+PRESENTED = (ResponseKind.MERGED, ResponseKind.FRAME_SHOWN)
 
 #: After every good frame.
 READINGS = (commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS))
@@ -177,15 +185,17 @@ def _owed(configuration: MachineConfiguration, words: Sequence[int]) -> Iterator
 def check_trial(trial: Trial, run: EngineRun) -> None:
     """Every word has its answers, in order, and every good frame is exact, on the video pins and
     in the depths.  Raises ``AssertionError``."""
+    configuration = trial.job.configuration
+    presented = PRESENTED if configuration.snoops else ()
     begin = 0
     for reset, owed in zip(trial.job.resets, trial.cut, strict=True):
         end = sum(cycle <= reset.cycle for *_, cycle in run.responses)
-        _check_answers(run.responses[begin:end], owed[:end - begin])
+        _check_answers(run.responses[begin:end], owed, presented)
         begin = end
     responses = run.responses[begin:]
-    _check_answers(responses, trial.owed)
+    _check_answers(responses, trial.owed, presented)
     assert len(responses) == len(trial.owed), f"{len(responses)} answers, not {len(trial.owed)}"
-    configuration = trial.job.configuration
+    responses = _by_command(responses, presented)
     organisation = organisation_of(configuration)
     boot = responses[:len(owed_at_boot(organisation))]
     answers = sum(len(owed_to(organisation, word))
@@ -197,9 +207,26 @@ def check_trial(trial: Trial, run: EngineRun) -> None:
         assert comparison.equal, f"frame {number}: {comparison.first_difference}"
 
 
-def _check_answers(responses: Sequence[tuple[ResponseKind, int, int]],
-                   owed: Sequence[Owed]) -> None:
-    """Those that came are those that are owed; ``owed`` may go on."""
-    for place, ((kind, value, cycle), answer) in enumerate(zip(responses, owed, strict=False)):
-        assert kind == answer.kind and answer.value in (None, value), (
-            f"answer {place}, cycle {cycle}: {kind.name} {value}, {answer} is due")
+def _by_command(responses: Sequence[Response],
+                presented: Sequence[ResponseKind]) -> list[Response]:
+    """What is said of a frame while later commands are answered, put behind its first answer."""
+    late = iter([response for response in responses if response[0] in presented])
+    found: list[Response] = []
+    for response in responses:
+        if response[0] not in presented:
+            found.append(response)
+            if response[0] == ResponseKind.FRAME_DRAWN:
+                found += islice(late, len(presented))
+    return found
+
+
+def _check_answers(responses: Sequence[Response], owed: Sequence[Owed],
+                   presented: Sequence[ResponseKind]) -> None:
+    """Those that came are those that are owed; either may go on.  Kinds that are ``presented``
+    have an order of their own."""
+    for late in (False, True):
+        came = [response for response in responses if (response[0] in presented) == late]
+        due = [answer for answer in owed if (answer.kind in presented) == late]
+        for place, ((kind, value, cycle), answer) in enumerate(zip(came, due, strict=False)):
+            assert kind == answer.kind and answer.value in (None, value), (
+                f"answer {place}, cycle {cycle}: {kind.name} {value}, {answer} is due")

@@ -37,6 +37,7 @@ MACHINES: dict[str, dict[str, Any]] = {
                "setup_interval": 8},
     "chain": {"cards": "2x(PMC)", "width": 6, "height": 5},
     "tree": {"cards": "2x(PMT)", "width": 8, "height": 4, "shading": "flat"},
+    "bus": {"cards": "2x(PMS)F", "width": 6, "height": 5, "tag_bits": 3},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
     "larger": {"cards": "PMMPMM", "width": 48, "height": 40},

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 from cycle_lists import scene
 from wide_machines import wide_machine
 
@@ -46,7 +47,7 @@ def test_nodes_take_the_predicted_clocks(cards, retained):
     listed = scene(1, n=40, size=4)
     machine = wide_machine(listed, cards=cards, memory_ports=2, fifo_depth=4,
                            list_words=20 if retained else 0)
-    shares = organisation_of(machine).shares(40)
+    shares = organisation_of(machine).shares(list_of(40))
     for node in range(machine.nodes):
         listed.position[shares.of_node(node)[-1]] = 256 * np.array([[0, 0], [40, 0], [40, 28]])
     machine = replace(machine, fraction_bits=40)

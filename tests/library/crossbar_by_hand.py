@@ -77,7 +77,7 @@ class Element:
 def rows_of(configuration: MachineConfiguration, listed: DisplayList, node: int):
     """Of each of its triangles that may cover a pixel, row by row, the units of its pixels."""
     organisation = organisation_of(configuration)
-    own = listed.chosen(organisation.shares(listed.triangles).of_node(node))
+    own = listed.chosen(organisation.shares(listed).of_node(node))
     triangles, drawn = Triangles.of(own, Grid.of(own)), fragments(own)
     found = []
     for place, primitive in enumerate(triangles.primitive.tolist()):
@@ -94,7 +94,7 @@ def rows_of(configuration: MachineConfiguration, listed: DisplayList, node: int)
 def clocks_by_hand(configuration: MachineConfiguration, listed: DisplayList, pipeline: Pipeline, *,
                    retained: bool = False):
     """The last clock in which something of each triangle is taken, by (node, triangle)."""
-    shares = organisation_of(configuration).shares(listed.triangles)
+    shares = organisation_of(configuration).shares(listed)
     elements, kept = [], []
     for node in range(configuration.nodes):
         _, triangles, rows = rows_of(configuration, listed, node)

@@ -72,7 +72,7 @@ def shared_out(configuration: MachineConfiguration, listed: DisplayList, pipelin
     """(place among all that the host sends, node, of each of the node's elements what
     ``walked_by_hand`` says) of each triangle, in the order in which the host sends them."""
     organisation = organisation_of(configuration)
-    shares = organisation.shares(listed.triangles)
+    shares = organisation.shares(listed)
     places = shares.host_order.tolist()
     found = []
     for node, alone in enumerate(organisation.each):

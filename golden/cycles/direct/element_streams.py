@@ -99,7 +99,7 @@ def element_streams(configuration: MachineConfiguration, display_list: DisplayLi
     triangles = Triangles.of(listed, Grid.of(listed, **shifts))
     primitive, blocks = own[triangles.primitive], organisation.each[node].blocks
     bits = configuration.order_bits
-    order = ((organisation.shares(display_list.triangles).round[primitive]
+    order = ((organisation.shares(display_list).round[primitive]
               << configuration.node_order_bits) + node) & ((1 << bits) - 1)
     parts = []
     for spans in lattice_spans(triangles, blocks):

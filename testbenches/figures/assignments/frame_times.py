@@ -1,7 +1,7 @@
 """How long a frame takes by each assignment of the triangles to the nodes of a snooped bus.
 
 Nodes are ``PMM`` with two ports, and draw their triangles from lists.  Drawing is what the cycle
-model says of the busiest node; merging takes a clock for each pixel that is sent.
+model says of the busiest node, merging what it says of a bus.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from ....golden.cycles.broadcast import LIST_LATENCY
 from ....golden.cycles.cycle_model import predict_cycles
+from ....golden.cycles.snoop_clocks import snoop_clocks
 from ....golden.merging.depth_order import DepthOrder
+from ....golden.merging.traffic import Send, Traffic
 from ....golden.planning.machine_plan import plan
 from ....golden.specification.configuration import MachineConfiguration
 from ....golden.specification.display_list import DisplayList
@@ -102,11 +104,13 @@ class TimesJob:
 def _time(display_list: DisplayList, order: DepthOrder, machine: MachineConfiguration,
           assignment: Any, nodes: int) -> FrameTime:
     node = assignment.node_of(display_list, nodes)
-    sent = int(order.sent_by(node, nodes).sum())
+    traffic = Traffic(nodes, [Send(each, each, None, sent) for each, sent in
+                              enumerate(order.sent_by(node, nodes).tolist())])
     return FrameTime(
         assignment.name, assignment.keeps_order, draw_clocks(machine, display_list, node, nodes),
-        sent, int(order.drawn_by(node, nodes).max()) / max(order.fragments, 1),
-        sent / max(order.pixels, 1))
+        sum(snoop_clocks(traffic)),
+        int(order.drawn_by(node, nodes).max()) / max(order.fragments, 1),
+        traffic.pixels / max(order.pixels, 1))
 
 
 def draw_clocks(machine: MachineConfiguration, display_list: DisplayList,

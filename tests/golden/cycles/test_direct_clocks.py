@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 from crossbar_by_hand import ONE_QUEUE, clocks_by_hand
 from cycle_lists import scene
 from wide_machines import wide_machine
@@ -49,7 +50,7 @@ def test_the_arrays_do_what_queues_do(cards, queue):
             taken = clocks_by_hand(machine, listed, pipeline, retained=retained)
             prediction = predict_cycles(machine, listed, pipeline, retained=retained)
             assert prediction.cycles == max(taken.values()) + pipeline.finish + CROSSBAR_LATENCY
-            shares = organisation_of(machine).shares(n)
+            shares = organisation_of(machine).shares(list_of(n))
             work = DirectWork(machine, listed, pipeline)
             node = shares.node[work.primitive]
             place = [int((work.primitive[(node == of) & (work.primitive < primitive)]).size)
@@ -85,7 +86,7 @@ def test_streams_are_the_fragments_of_each_element():
         np.testing.assert_array_equal(np.bincount(fragments, minlength=4), taken[node])
         place = streams.place[firsts[3][node]:firsts[3][node + 1]]
         np.testing.assert_array_equal(place // organisation.words, fragments)
-    rounds = organisation.shares(50)
+    rounds = organisation.shares(list_of(50))
     primitive = streams.primitive[streams.triangle]
     np.testing.assert_array_equal(
         streams.rank & ((1 << 16) - 1), rounds.round[primitive] * 4 + rounds.node[primitive])

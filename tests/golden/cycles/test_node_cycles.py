@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 from cycle_lists import scene
 from cycle_recurrence import LISTS, written_out, written_out_lists
 from wide_machines import wide_machine
@@ -26,7 +27,7 @@ def nodes_scene(configuration, seed, n=60, size=12):
     """Random triangles; the last one of each node has a span in each of its elements, which keeps
     its list in one part."""
     listed = scene(seed, n=n, size=size)
-    shares = organisation_of(configuration).shares(n)
+    shares = organisation_of(configuration).shares(list_of(n))
     for node in range(configuration.nodes):
         listed.position[shares.of_node(node)[-1]] = 256 * np.array([[0, 0], [39, 0], [0, 27]])
     return listed
@@ -35,7 +36,7 @@ def nodes_scene(configuration, seed, n=60, size=12):
 def shares_alone(machine, listed):
     """Of each node a machine of one node, with the triangles that it draws."""
     organisation = organisation_of(machine)
-    shares = organisation.shares(listed.triangles)
+    shares = organisation.shares(listed)
     return [(alone.configuration, listed.chosen(shares.of_node(node)))
             for node, alone in enumerate(organisation.each)]
 

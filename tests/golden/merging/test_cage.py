@@ -20,7 +20,7 @@ TIED.depth[:] = 7000
 def drawn_by(machine, display_list):
     """bool (nodes, height, width): what each node draws."""
     organisation = organisation_of(machine)
-    shares = organisation.shares(display_list.triangles)
+    shares = organisation.shares(display_list)
     return np.array([exact.draw(display_list.chosen(shares.of_node(node)),
                                 **organisation.resolution.shifts).winner >= 0
                      for node in range(machine.nodes)])

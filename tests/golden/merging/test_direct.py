@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 
 from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.merging.direct import direct_traffic
@@ -39,7 +40,7 @@ def arrivals(elements, pick):
 def stored(configuration, listed, pick):
     """Memory after fragments came in some order: pixel → (rank, primitive), one after another."""
     organisation = organisation_of(configuration)
-    shares = organisation.shares(listed.triangles)
+    shares = organisation.shares(listed)
     drawn = exact.fragments(listed, **organisation.resolution.shifts)
     node = shares.node[drawn.primitive]
     elements = [[] for _ in range(configuration.nodes)]
@@ -122,7 +123,7 @@ def test_each_unit_takes_the_fragments_of_its_pixels(cards, words):
         taken = np.zeros((machine.nodes, machine.units), int)
         step = machine.interlace.diagonal_step
         for primitive, x, y in zip(drawn.primitive, drawn.x, drawn.y, strict=True):
-            node = organisation.shares(90).node[primitive]
+            node = organisation.shares(list_of(90)).node[primitive]
             taken[node, (int(x) + step * int(y)) % machine.units] += 1
         traffic = direct_traffic(organisation, listed)
         np.testing.assert_array_equal(traffic.taken, taken)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.shares import Shares
@@ -44,7 +45,7 @@ def test_who_draws_where(organisation):
     assert organisation.owners.tolist() == [[node] * units for node in range(elements)]
     assert organisation.owned_pixels.all()
     assert all(organisation.is_scanned(node) for node in range(elements))
-    assert organisation.shares(50) == Shares(elements, 50, 1)
+    assert organisation.shares(list_of(50)) == Shares(elements, 50, 1)
 
 
 def test_every_element_walks_the_whole_screen(organisation):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -44,7 +45,7 @@ def test_every_pixel_has_a_place_of_its_own(organisation):
 
 def test_one_node_draws_and_shows_everything(organisation):
     assert organisation.nodes == 1 and organisation.is_scanned(0) and not organisation.merges
-    assert not organisation.shares(100).node.any()
+    assert not organisation.shares(list_of(100)).node.any()
 
 
 def test_domains_are_what_lies_right_of_each_processing_element(organisation):

@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from counted_lists import list_of
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.shares import Shares
@@ -197,7 +198,7 @@ def test_a_coarser_cage_shows_each_pixel_several_times(merge):
 @pytest.mark.parametrize("merge", NAMES)
 @pytest.mark.parametrize("packet", [1, 3, "contiguous"])
 def test_shares_are_the_configurations(merge, packet):
-    shares = cage("cut up differently", merge, packet=packet).shares(50)
+    shares = cage("cut up differently", merge, packet=packet).shares(list_of(50))
     assert shares == Shares(nodes=3, triangles=50, packet=packet)
 
 

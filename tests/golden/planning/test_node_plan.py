@@ -35,7 +35,7 @@ def line(planned, item):
 
 
 def assert_same_pictures(display_list, machine, whole):
-    shares = organisation_of(machine).shares(display_list.triangles)
+    shares = organisation_of(machine).shares(display_list)
     pictures = node_pictures(display_list, shares, order_bits=machine.order_bits)
     for name in ("color", "depth", "winner"):
         np.testing.assert_array_equal(getattr(merged(pictures).picture, name),
@@ -73,7 +73,7 @@ def test_an_order_has_the_node_where_fragments_of_nodes_meet(cards, packet, dept
     display_list = levels(depths)
     planned = plan(display_list, cards=cards, packet=packet)
     machine = planned.configuration
-    shares = organisation_of(machine).shares(display_list.triangles)
+    shares = organisation_of(machine).shares(display_list)
     node_bits = machine.node_order_bits
     assert node_bits == {"3xP D 4xM": 2, "PPDM": 1, "PDMM": 0}[cards]
     ties, matters = nodes_tie(display_list, shares), order_matters(display_list, shares)

@@ -69,7 +69,7 @@ def test_every_packet_in_every_way(name, stall_seed):
 def test_order_matters_in_the_list(name):
     """So that the test above can fail: whoever has the least number is not always first."""
     machine, listed = model(name)
-    shares = organisation_of(replace(machine, packet=1)).shares(listed.triangles)
+    shares = organisation_of(replace(machine, packet=1)).shares(listed)
     assert order_matters(listed, shares) == (machine.nodes > 1)
 
 

@@ -117,6 +117,9 @@ def cage(cards, **options):
     ("PMMT PMMT PMT", [2, 2, 1], Fault.NODES_DIFFER),
     ("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED),
     ("PMMC PC PMMC", [2, 0, 2], Fault.UNITS_UNSUPPORTED),
+    ("PMMMMS PMMS F", [4, 2], Fault.NODES_DIFFER),
+    ("PMMS PMMS FFF", [2, 2], Fault.UNITS_UNSUPPORTED),
+    ("PMMS PMS FFF", [2, 1], Fault.UNITS_UNSUPPORTED),
     ("PPDMMM", [3, 3], Fault.UNITS_UNSUPPORTED),
 ])
 def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
@@ -142,6 +145,9 @@ def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
     ("PMMMMC PMMMMC", (8, 8)),  # of five nodes
     ("PMMT PPMMT PMMPT", (8, 4)),  # and two units of each
     ("PMC PMC PMC", (4, 4)),
+    ("PMMMMS PMMMMS F", (8, 8)),
+    ("PMMS PPMMS PMMPS FF", (8, 4)),
+    ("PMS PMS PMS FFFF", (4, 4)),
     ("PPPDMM", (8, 4)),
 ])
 def test_whole_nodes_pulled_out(cards, resolution):

@@ -12,6 +12,7 @@ from node_frames import (
     all_tied,
     check_merged,
     compiled,
+    frames,
     immediate,
     loads,
     model,
@@ -134,6 +135,25 @@ def test_depths_are_those_of_the_picture_drawn_last(name):
     for read, drawn in zip(depths, (listed, other, other, other), strict=True):
         np.testing.assert_array_equal(organisation.depth_image(read),
                                       golden_picture(machine, drawn).depth)
+
+
+#: Nodes that interlace in other ways than frame units do, and coarser ones.
+OTHERS = {
+    "skewed": ("2x(PMMS)F", {"skew": True, "memory_ports": 2}),
+    "in squares": ("2x(PMMPMMS)FFFF", {"block": 4, "memory_ports": 2}),
+    "words for a quarter": ("PMMSF", {"words": 20}),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_cages(name):
+    cards, options = OTHERS[name]
+    listed = random_list(5, 14, width=13, height=7)
+    machine = wide_machine(listed, cards=cards, clocks_per_pixel=2, fraction_bits=36, order_bits=4,
+                           **options)
+    lists = [listed, all_tied(9, 2, width=13, height=7)]
+    frames(machine, [(immediate(machine, each), machine, each) for each in lists], compiled(),
+           stall_seed=1)
 
 
 #: Cages, lists, and what a frame takes as long as.

@@ -25,7 +25,7 @@ def traffic_of(configuration, display_list):
     """What golden says that the nodes send."""
     organisation = organisation_of(configuration)
     _, traffic = merge_tree(node_pictures(
-        display_list, organisation.shares(display_list.triangles),
+        display_list, organisation.shares(display_list),
         order_bits=configuration.order_bits, **organisation.resolution.shifts))
     return traffic
 

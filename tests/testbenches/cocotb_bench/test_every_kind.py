@@ -9,17 +9,26 @@ from __future__ import annotations
 import pytest
 from click.testing import CliRunner
 
+from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind, opcode_of
+from cardcage.golden.specification.commands import (
+    Fault,
+    Opcode,
+    ResponseKind,
+    command,
+    opcode_of,
+)
 from cardcage.testbenches.cocotb_bench.conversation_check import ConversationCheck
 from cardcage.testbenches.cocotb_bench.exchange import read_configuration
 from cardcage.testbenches.cocotb_bench.scan_check import check_scans, masked, owned_pixels
 from cardcage.testbenches.cocotb_bench.simulators import SIMULATORS, find_simulator
 from cardcage.testbenches.cocotb_bench.violation import ProtocolError
 from cardcage.testbenches.command_line.cli import main
+from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError
-from cardcage.testbenches.frames.frame_job import frame_job
+from cardcage.testbenches.frames.conversation import responses_owed
+from cardcage.testbenches.frames.frame_job import frame_commands, frame_job
 from cardcage.testbenches.machine_options import MachineOptions, machine_for_scene
 
 SCENE = "random:n=6,size=6,seed=2"
@@ -33,6 +42,10 @@ KINDS = [
     {"cards": "PMPM", "setup": "small", "memory_ports": 2, "block": 2, "shading": "flat"},
     {"cards": "PMPM", "setup": "fast", "memory_ports": 1, "block": 4, "words": 8},
     {"cards": "PMMPMM", "setup": "fast", "memory_ports": 2, "skew": True, "shading": "flat"},
+    {"cards": "2x(PMC)", "setup": "host", "memory_ports": 1},
+    {"cards": "2x(PMT)", "setup": "host", "memory_ports": 2},
+    {"cards": "2x(PMS)F", "setup": "host", "memory_ports": 2},
+    {"cards": "PPDM", "setup": "host", "memory_ports": 1, "queue": "element"},
 ]
 
 
@@ -75,6 +88,37 @@ def test_the_checks_take_it(kind):
                                  run.responses[place][2]))
     with pytest.raises(ProtocolError, match="FRAME_DRAWN is due"):
         talk(configuration, job.commands, run)
+
+
+@pytest.mark.parametrize("retain", [False, True])
+@pytest.mark.parametrize("cards", ["2x(PMC)", "2x(PMT)", "2x(PMS)F", "PPDM"])
+def test_frames_that_are_shown_while_others_are_sent(cards, retain):
+    """Where they are: a chain and a tree take new lists meanwhile, a bus a frame."""
+    loaded, configuration = machine_for_scene(SCENE, MachineOptions(
+        size=(8, 8), cards=cards, retain=retain or None))
+    organisation = organisation_of(configuration)
+    frame = frame_commands(configuration, loaded.display_list)
+    words = [*frame * 3, command(Opcode.READ_COUNTERS), command(Opcode.READ_DEPTH), *frame]
+    run = PysimEngine().run(Job(configuration, words, responses_owed(organisation, words)))
+    assert talk(configuration, words, run).complete
+    kinds = [kind for kind, *_ in run.responses]
+    drawn, shown = ([cycle for kind, _, cycle in run.responses if kind == wanted]
+                    for wanted in (ResponseKind.FRAME_DRAWN, ResponseKind.FRAME_SHOWN))
+    first = run.accepted[len(frame)]  # command of the second frame
+    overlaps = configuration.snoops or (retain and first < shown[0])
+    assert (first < shown[0]) == overlaps and len(drawn) == len(shown) == 4
+    if configuration.snoops:
+        assert drawn[1] < shown[0]
+    # A picture that is shown before it was said to be drawn is caught.
+    place = kinds.index(ResponseKind.FRAME_DRAWN)
+    run.responses[place:place] = [(ResponseKind.MERGED, 0, run.responses[place][2])]
+    with pytest.raises(ProtocolError, match="FRAME_DRAWN is due"):
+        talk(configuration, words, run)
+    # And a command for a frame for which there was no memory.
+    run.responses.pop(place)
+    run.accepted[2 * len(frame)] = run.accepted[2 * len(frame) - 1] + 1
+    with pytest.raises(ProtocolError, match="is taken while FRAME_DRAWN is still due"):
+        talk(configuration, words, run)
 
 
 @pytest.fixture(scope="module")

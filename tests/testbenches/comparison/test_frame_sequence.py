@@ -53,7 +53,8 @@ def seen(monkeypatch):
 
 
 @pytest.mark.parametrize(("cards", "retained", "options"), [
-    ("PM", False, {}), ("2x(PMC)", False, {"packet": "contiguous"}), ("2x(PMT)", True, {})])
+    ("PM", False, {}), ("2x(PMC)", False, {"packet": "contiguous"}), ("2x(PMT)", True, {}),
+    ("2x(PMS)F", False, {}), ("2x(PMS)FF", True, {}), ("PPDM", True, {})])
 def test_what_is_said_of_a_frame_is_what_is_seen(seen, cards, retained, options):
     configuration = machine(cards, retained, **options)
     frames = FrameSequence(configuration, MARKED, "pysim", memory_seed=3)
@@ -70,13 +71,15 @@ def test_what_is_said_of_a_frame_is_what_is_seen(seen, cards, retained, options)
     assert len(of[Opcode.FRAME_START]) == FRAMES
     # The last triangle is the last one that is sent.
     drawing = of[Opcode.DRAW_LISTS] if retained else of[Opcode.PREPARED_TRIANGLE]
-    last = taken[drawing[-1]]
+    # Where the next frame is drawn meanwhile, the first one is the one that waits for none.
+    frame = 0 if "S" in cards else -1
+    last = taken[drawing[len(drawing) // FRAMES - 1 if "S" in cards else -1]]
     white = next(cycle for cycle, color in pixels
-                 if color == WHITE and cycle > cycles[ResponseKind.FRAME_SHOWN][-1])
+                 if color == WHITE and cycle > cycles[ResponseKind.FRAME_SHOWN][frame])
     latency = frames.latency(exact.draw(MARKED))
     assert (latency.triangle, latency.pixel) == (11, (2, 3))
     assert latency.pins == white - last
-    assert latency.merged == merged[-1] - last
+    assert latency.merged == merged[frame] - last
 
     clocks = frames.clocks
     assert clocks.load == (taken[drawing[0]] - taken[of[Opcode.LOAD][0]] if retained else None)
@@ -84,7 +87,9 @@ def test_what_is_said_of_a_frame_is_what_is_seen(seen, cards, retained, options)
     # The next frame begins as the picture is shown, and is merged within the same scan.
     assert clocks.frame == configuration.cycles_per_scan
     assert clocks.draw == frames.simulation.draw_cycles < clocks.frame
-    assert (clocks.merge > 0) == cards.endswith("T)")
+    assert (clocks.merge > 0) == ("T" in cards or "S" in cards)
+    if "S" in cards:
+        assert clocks.merge == merged[0] - cycles[ResponseKind.FRAME_DRAWN][0]
     assert clocks.boot == frames.simulation.boot_cycles
     assert len(frames.shown_scans) >= FRAMES
     assert len(of[Opcode.LOAD]) == (len(MARKED.position) - unsent(configuration)) * retained

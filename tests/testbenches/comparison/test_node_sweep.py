@@ -9,6 +9,7 @@ from cardcage.golden.organisations.shares import Shares
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.reference.exact import depth_complexity, draw
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.card_order import parse_cards
 from cardcage.testbenches.comparison.cage import Cage
 from cardcage.testbenches.comparison.node_sweep import (
     FrameTime,
@@ -18,6 +19,7 @@ from cardcage.testbenches.comparison.node_sweep import (
     grown,
     places,
     predicted_time,
+    repeated,
     repeated_piece,
 )
 
@@ -27,9 +29,29 @@ LIST = make_display_list("random:n=12,size=5,seed=5", width=8, height=8,
 
 @pytest.mark.parametrize(("cards", "piece"), [
     ("PM", "PM"), ("4x(PMM)", "PMM"), ("2x(2x(PMM)C)", "PMMPMMC"), ("PMMPM", "PMMPM"),
-    ("4x(PMMT)", "PMMT")])
+    ("4x(PMMT)", "PMMT"), ("4x(PMMS)FF", "PMMSFF"), ("PMMPMMS F", "PMMPMMSF"),
+    ("PPPPDMMMM", "PDM"), ("4xP D 8xM", "PDMM"), ("6xP D 4xM", "PPPDMM"), ("D", "D")])
 def test_the_piece_that_repeats(cards, piece):
     assert repeated_piece(cards) == piece
+    assert parse_cards(repeated(piece, 1)) == piece
+
+
+@pytest.mark.parametrize(("piece", "copies", "cards"), [
+    ("PMM", 2, "PMMPMM"), ("PMMC", 2, "PMMCPMMC"), ("PMMSFF", 3, "PMMSPMMSPMMSFF"),
+    ("PDMM", 2, "PPDMMMM"), ("PPDM", 3, "PPPPPPDMMM")])
+def test_a_piece_several_times(piece, copies, cards):
+    """Frame units are there once, and a direct merge."""
+    assert parse_cards(repeated(piece, copies)) == cards
+
+
+def test_what_the_model_says_of_cages_on_a_bus_and_of_direct_ones():
+    """Four of either draw faster than one; only a bus has anything left to do then."""
+    listed = grown(LIST, 4)
+    for piece, merges in (("PMSF", True), ("PDM", False)):
+        one, four = (predicted_time(plan(listed, cards=repeated(piece, copies),
+                                         memory_ports=2).configuration, listed, False)
+                     for copies in (1, 4))
+        assert four.draw < one.draw and (four.merge > 0) == merges
 
 
 @pytest.mark.parametrize("packet", [1, 3, "contiguous"])

@@ -115,6 +115,33 @@ def test_json_keys(folder):
     assert facts["first_difference"] is None
 
 
+@pytest.mark.parametrize(("cards", "links"), [
+    ("PMCPMC", 1), ("PMSPMSFF", 2), ("PPDMM", 2)])
+def test_what_nodes_sent(draw, tmp_path, cards, links):
+    rendering = draw(cards=cards, out=tmp_path / "report")
+    facts = json.loads((tmp_path / "report" / "report.json").read_text())
+    merging, machine = facts["merging"], facts["machine"]
+    assert merging["equal"] and merging["pixels"] == merging["golden_pixels"]
+    assert sum(pixels > 0 for pixels in merging["pixels"]) == links
+    assert merging["total_bits"] == sum(merging["pixels"]) * merging["pixel_bits"]
+    assert (machine["nodes"], machine["frame_units"]) == (2, cards.count("F"))
+    assert machine["memory_units"] == machine["total_units"] == cards.count("M")
+    text = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    Page(text)
+    assert ("Frame units" in text) == ("F" in cards)
+    assert ("Just behind one of their pixel" in text) == ("D" in cards)
+    if "S" in cards:  # all on one bus
+        assert merging["busiest_link_pixels"] == sum(merging["pixels"])
+    if "D" in cards:
+        fragments = [element["fragments"] for element in facts["per_pe"]]
+        assert merging["pixels"] == fragments and merging["taken_equal"]
+        assert merging["taken"] == merging["golden_taken"] == list(rendering.simulation.taken)
+        assert sum(merging["taken"]) == sum(fragments) >= sum(merging["followed"])
+        assert merging["busiest_link_pixels"] == max(*fragments, *merging["taken"])
+    else:
+        assert "taken" not in merging
+
+
 @pytest.mark.parametrize("which", ["folder", "wrong"])
 def test_page_is_complete_in_itself(which, request):
     text = (request.getfixturevalue(which) / "report.html").read_text(encoding="utf-8")

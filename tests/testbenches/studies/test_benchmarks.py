@@ -42,7 +42,7 @@ def test_runs_of_equal_work_that_are_sent():
     display_list = make_display_list("sphereflake:depth=1,tessellation=1", width=64, height=64,
                                      shading="flat").display_list
     machine = equal_work.planned(display_list, "contiguous")
-    shares = organisation_of(machine).shares(display_list.triangles)
+    shares = organisation_of(machine).shares(display_list)
     by_hand = equal_work.dealt(shares.node, shares.host_order)
     assert (by_hand.host_place == shares.host_place).all()
     assert all((by_hand.of_node(node) == shares.of_node(node)).all() for node in range(16))

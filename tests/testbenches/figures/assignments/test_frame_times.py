@@ -2,13 +2,16 @@
 
 from math import prod
 
+import numpy as np
 import pytest
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
+from cardcage.golden.cycles.snoop_clocks import snoop_clocks
 from cardcage.golden.merging.node_picture import node_pictures
 from cardcage.golden.merging.snoop import merge_snoop
 from cardcage.golden.organisations.shares import Shares
 from cardcage.golden.planning.machine_plan import plan
+from cardcage.golden.reference.exact import depth_complexity
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.figures.assignments.assignment import ASSIGNMENTS
 from cardcage.testbenches.figures.assignments.frame_times import (
@@ -51,7 +54,8 @@ def test_times_of_a_scene():
         _, traffic = merge_snoop(node_pictures(display_list,
                                                Shares(each.nodes, display_list.triangles)))
         time = each.of("round robin")
-        assert time.merge == traffic.pixels
+        assert time.merge == sum(snoop_clocks(traffic)) > traffic.pixels
+        assert time.sent == traffic.pixels / np.count_nonzero(depth_complexity(display_list))
         assert time.in_turn == time.draw + time.merge
         assert time.overlapped == max(time.draw, time.merge)
         assert 1 / each.nodes <= time.busiest <= 1 <= time.sent
