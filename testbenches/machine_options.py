@@ -177,6 +177,11 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     if options.retain and options.list_words is None:
         raise InputError("--retain: without a scene nobody knows how many triangles its lists "
                          "hold; give --list-words, or a scene")
+    looking = options.looking()
+    if looking != MachineOptions().looking():
+        [name] = [name for name in ("view", "zoom", "background", "cull", "light")
+                  if getattr(options, name) is not None][:1]
+        raise InputError(f"--{name}: without a scene there is nothing to look at; give a scene")
     machine = MachineConfiguration(**DEFAULT_SIZE | options.machine())
     if not options.max_error:
         return machine

@@ -161,8 +161,10 @@ class CageComparison:
 
 
 def _same(one: CageRun, other: CageRun) -> bool:
+    depth, others = one.simulation.depth, other.simulation.depth
+    assert depth is not None and others is not None  # they are always read
     return (np.array_equal(one.simulation.video, other.simulation.video)
-            and np.array_equal(one.simulation.depth, other.simulation.depth))
+            and np.array_equal(depth, others))
 
 
 def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFAULT_CARDS, *,

@@ -26,11 +26,7 @@ from ...golden.specification.card_order import (
     merge_card,
     parse_cards,
 )
-from ...golden.specification.configuration import (
-    ONE_PACKET_EACH,
-    MachineConfiguration,
-    Packet,
-)
+from ...golden.specification.configuration import MachineConfiguration, Packet
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..frames.setup_timing import setup_timing
@@ -77,7 +73,7 @@ def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> Display
     before: every node draws as much as one did of the list alone, all over the picture.
     """
     thickness = ((1 << display_list.depth_bits) - 1) // copies
-    step = 0 if packet in ONE_PACKET_EACH else packet
+    step = packet if isinstance(packet, int) else 0  # each node has one packet
 
     def copy(number: int) -> DisplayList:
         turned = display_list.chosen(np.roll(np.arange(display_list.triangles), number * step))

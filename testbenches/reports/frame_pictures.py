@@ -57,11 +57,12 @@ def depth_difference(rendering: Rendering, reach: int = 0) -> Pixels:
 
 
 def depth_pictures(rendering: Rendering) -> tuple[Pixels, Pixels]:
-    """The machine's depths and the golden ones on one scale, near is light; background apart."""
-    got, wanted = (
-        _depth_picture(rendering, depth)
-        for depth in (rendering.simulation.depth, rendering.comparison.golden.depth)
-    )
+    """The machine's depths and the golden ones on one scale, near is light; background apart.  Only
+    where depths were read back."""
+    read = rendering.simulation.depth
+    assert read is not None
+    got, wanted = (_depth_picture(rendering, depth)
+                   for depth in (read, rendering.comparison.golden.depth))
     got[rendering.comparison.depth_orphans] = ORPHAN_COLOR
     return got, wanted
 

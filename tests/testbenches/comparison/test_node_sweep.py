@@ -22,6 +22,7 @@ from cardcage.testbenches.comparison.node_sweep import (
     repeated,
     repeated_piece,
 )
+from cardcage.testbenches.machine_options import DEFAULT_PACKET
 
 LIST = make_display_list("random:n=12,size=5,seed=5", width=8, height=8,
                          shading="flat").display_list
@@ -103,7 +104,8 @@ def test_the_speed_up():
 @pytest.mark.parametrize(("cards", "retain"), [("2x(PM)", False), ("2x(PMC)", True),
                                                ("2x(PMT)", False)])
 def test_what_the_model_says_is_near_what_is_simulated(small, cards, retain):
-    configuration = plan(LIST, cards=cards, retain=retain, clocks_per_pixel=2).configuration
+    configuration = plan(LIST, cards=cards, retain=retain, clocks_per_pixel=2,
+                         packet=DEFAULT_PACKET).configuration
     model = predicted_time(configuration, LIST, retain)
     [run] = [run for run in small().runs if run.cage == Cage(cards, retain)]
     assert model.draw == pytest.approx(run.clocks.draw, rel=0.25)
