@@ -96,7 +96,7 @@ EQUIVALENT = (
     Equivalent(
         "hdl/memory_unit/memory_access.py", '"read_busy": In(1),', "In(1) → In(2)", _WIDER),
     *(Equivalent(
-        "hdl/memory_unit/memory_unit.py", "COMPARED_BITS = 4", f"4 → {bits}",
+        "hdl/memory_unit/sweep_part.py", "COMPARED_BITS = 4", f"4 → {bits}",
         "With each bit false alarms, which cost clocks only, are half as many or twice as many.")
       for bits in (3, 5)),
     Equivalent(
