@@ -27,6 +27,9 @@ from .cage_memory import Memory, cells_of, memories_of
 from .frame_sequence import Clocks, FrameSequence, Latency
 from .view_spread import ViewFigures, draw_views
 
+#: Two times are the same if one is no more than so many times the other.
+MEASURED_ALIKE = 1.05
+
 
 @dataclass(frozen=True)
 class Cage:
@@ -113,6 +116,16 @@ class CageRun:
     def busiest_share(self) -> float:
         """The most fragments of a node, as a part of all; 0 where there are none."""
         return max(node.fragments for node in self.nodes) / max(self.fragments, 1)
+
+    @property
+    def bound_by(self) -> str:
+        """What a frame takes as long as, within a twentieth; a picture is shown from the beginning
+        of a scan on, so that else it is whole scans."""
+        parts = {"drawing": self.clocks.draw, "merging": self.clocks.merge}
+        busiest = max(parts, key=parts.__getitem__)
+        # On a bus the next frame is drawn while one is merged.
+        least = max(parts.values()) if self.configuration.snoops else sum(parts.values())
+        return busiest if self.clocks.frame <= MEASURED_ALIKE * least else "whole scans"
 
     @property
     def memory_bits(self) -> int:

@@ -27,7 +27,8 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
 
         ``label`` ``cards`` ``retained`` ``machine`` (every field, and what follows from it)
         ``equal`` ``differences`` ``pixels`` ``depth`` (compared, different)
-        ``cycles``        boot, load (None without lists), draw, merge, frame, scan
+        ``cycles``        boot, load (None without lists), draw, merge, frame, scan; bound_by:
+                          drawing, merging or whole scans, whichever a frame takes as long as
         ``latency``       triangle, pixel, merged, pins; None where nothing is seen
         ``fragments``     of a frame, ``busiest_node_share`` of them
         ``nodes``         fragments and sent of each, and what golden says
@@ -75,7 +76,8 @@ def cage_facts(run: CageRun) -> dict[str, Any]:
         "differences": list(run.differences),
         "pixels": {"compared": compared.pixels_compared, "different": compared.pixels_different},
         "depth": {"compared": compared.depths_compared, "different": compared.depths_different},
-        "cycles": {**asdict(run.clocks), "scan": run.configuration.cycles_per_scan},
+        "cycles": {**asdict(run.clocks), "scan": run.configuration.cycles_per_scan,
+                   "bound_by": run.bound_by},
         "latency": None if run.latency is None else asdict(run.latency)
         | {"pixel": list(run.latency.pixel)},
         "fragments": run.fragments,

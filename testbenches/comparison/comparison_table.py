@@ -52,6 +52,7 @@ FIGURES: dict[str, Rows] = {
         "draw": lambda run: f"{run.clocks.draw:,}",
         "merge": lambda run: f"{run.clocks.merge:,}",
         "a frame": lambda run: f"{run.clocks.frame:,}",
+        "which is bound by": lambda run: run.bound_by,
     },
     "clocks from the last triangle": {
         "until the picture is complete": _latency("merged"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from amaranth.hdl import Fragment
@@ -12,6 +14,7 @@ from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.reference.exact import depth_complexity
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.commands import ResponseKind, list_word_bits
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
 from cardcage.hdl.controller.central_broadcast_controller import CentralBroadcastController
 from cardcage.hdl.memory_unit.memory_unit import MemoryUnit
@@ -196,3 +199,18 @@ def test_pictures_of_two_resolutions(small):
         ["2x(PM)"], ["2x(PMC)"]]
     assert comparison.warnings == ["2x(PMC): 32 words in each memory unit hold 8x4 pixels, not "
                                    "8x8: the picture is coarser"]
+
+
+@pytest.mark.parametrize(("cards", "draw", "merge", "frame", "bound"), [
+    ("2x(PMC)", 100, 0, 105, "drawing"), ("2x(PMC)", 100, 0, 106, "whole scans"),
+    ("2x(PMT)", 60, 40, 104, "drawing"), ("2x(PMT)", 40, 60, 104, "merging"),
+    ("2x(PMT)", 40, 60, 120, "whole scans"),
+    # The next frame is drawn meanwhile.
+    ("2x(PMS)F", 100, 80, 104, "drawing"), ("2x(PMS)F", 80, 100, 104, "merging"),
+    ("2x(PMS)F", 80, 100, 180, "whole scans"),
+])
+def test_what_binds_a_frame(small, cards, draw, merge, frame, bound):
+    [run] = [run for run in small().runs if run.cage.label == "2x(PMC)"]
+    configuration = MachineConfiguration(cards, 8, 8)
+    clocks = replace(run.clocks, draw=draw, merge=merge, frame=frame)
+    assert replace(run, configuration=configuration, clocks=clocks).bound_by == bound
