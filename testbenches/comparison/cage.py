@@ -119,13 +119,13 @@ class CageRun:
 
     @property
     def bound_by(self) -> str:
-        """What a frame takes as long as, within a twentieth; a picture is shown from the beginning
-        of a scan on, so that else it is whole scans."""
-        parts = {"drawing": self.clocks.draw, "merging": self.clocks.merge}
+        """``draw`` or ``merge``, if a frame takes as long as that, within a twentieth; else ``scan``:
+        a picture is shown from the beginning of a scan on, so that it takes whole scans."""
+        parts = {"draw": self.clocks.draw, "merge": self.clocks.merge}
         busiest = max(parts, key=parts.__getitem__)
         # On a bus the next frame is drawn while one is merged.
         least = max(parts.values()) if self.configuration.snoops else sum(parts.values())
-        return busiest if self.clocks.frame <= MEASURED_ALIKE * least else "whole scans"
+        return busiest if self.clocks.frame <= MEASURED_ALIKE * least else "scan"
 
     @property
     def memory_bits(self) -> int:

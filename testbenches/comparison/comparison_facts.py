@@ -28,7 +28,7 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
         ``label`` ``cards`` ``retained`` ``machine`` (every field, and what follows from it)
         ``equal`` ``differences`` ``pixels`` ``depth`` (compared, different)
         ``cycles``        boot, load (None without lists), draw, merge, frame, scan; bound_by:
-                          drawing, merging or whole scans, whichever a frame takes as long as
+                          draw, merge or scan, of which a frame takes as long as one, or some
         ``latency``       triangle, pixel, merged, pins; None where nothing is seen
         ``fragments``     of a frame, ``busiest_node_share`` of them
         ``nodes``         fragments and sent of each, and what golden says

@@ -202,12 +202,12 @@ def test_pictures_of_two_resolutions(small):
 
 
 @pytest.mark.parametrize(("cards", "draw", "merge", "frame", "bound"), [
-    ("2x(PMC)", 100, 0, 105, "drawing"), ("2x(PMC)", 100, 0, 106, "whole scans"),
-    ("2x(PMT)", 60, 40, 104, "drawing"), ("2x(PMT)", 40, 60, 104, "merging"),
-    ("2x(PMT)", 40, 60, 120, "whole scans"),
+    ("2x(PMC)", 100, 0, 105, "draw"), ("2x(PMC)", 100, 0, 106, "scan"),
+    ("2x(PMT)", 60, 40, 104, "draw"), ("2x(PMT)", 40, 60, 104, "merge"),
+    ("2x(PMT)", 40, 60, 120, "scan"),
     # The next frame is drawn meanwhile.
-    ("2x(PMS)F", 100, 80, 104, "drawing"), ("2x(PMS)F", 80, 100, 104, "merging"),
-    ("2x(PMS)F", 80, 100, 180, "whole scans"),
+    ("2x(PMS)F", 100, 80, 104, "draw"), ("2x(PMS)F", 80, 100, 104, "merge"),
+    ("2x(PMS)F", 80, 100, 180, "scan"),
 ])
 def test_what_binds_a_frame(small, cards, draw, merge, frame, bound):
     [run] = [run for run in small().runs if run.cage.label == "2x(PMC)"]
