@@ -19,6 +19,8 @@ FOLLOWING: dict[str, Callable[[MachineConfiguration, Organisation], Any]] = {
     "processing_elements": lambda configuration, organisation: configuration.processing_elements,
     "picture_width": lambda configuration, organisation: organisation.resolution.width,
     "picture_height": lambda configuration, organisation: organisation.resolution.height,
+    "diagonal_step": lambda configuration, organisation: (
+        configuration.interlace.diagonal_step if configuration.merges_directly else 0),
     "depth_plane_bits": lambda configuration, organisation: configuration.depth_plane_bits,
     "scan_reads_per_line": lambda configuration, organisation: organisation.scan_reads_per_line,
     "cycles_per_scan": lambda configuration, organisation: configuration.cycles_per_scan,

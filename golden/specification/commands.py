@@ -59,10 +59,10 @@ class ResponseKind(IntEnum):
     NODE = 11  # at boot, per node: its number, and the memory units it draws into
     NODES = 12  # at boot, where there are nodes: how many
     MERGED = 13  # where there are: cycles from the frame start to the merged picture
-    SENT = 14  # per node: pixels its merge card has sent for the last picture
+    SENT = 14  # per node: pixels its merge card has sent for the picture merged last
     FRAME_UNITS = 15  # at boot, where nodes send to frame units: how many there are
     TAKEN = 16  # per memory unit behind a direct merge: fragments it took since the frame start
-    FOLLOWED = 17  # of these, those whose pixel a fragment just ahead of them was to change
+    FOLLOWED = 17  # times that a depth on its way to the memory took the place of one read there
 
 
 class Fault(IntEnum):

@@ -32,8 +32,8 @@ _TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"
 _COUNTERS_OF_NODES = ("READ_COUNTERS: after FRAGMENTS and BUSY of a node's processing elements "
                       "SENT, the pixels that its merge card sent for the picture")
 _COUNTERS_OF_UNITS = ("READ_COUNTERS: after FRAGMENTS and BUSY of all processing elements TAKEN "
-                      "and FOLLOWED of each memory unit: fragments that it took, and those of "
-                      "them whose pixel a fragment just ahead of them was to change")
+                      "and FOLLOWED of each memory unit: fragments that it took, and how often a "
+                      "depth on its way to the memory took the place of what was read for one")
 
 
 def _inspected(component: wiring.Component, facts: Callable[[wiring.Component], Any]) -> Any:

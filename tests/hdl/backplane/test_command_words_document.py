@@ -63,7 +63,8 @@ def symbols(configuration):
             "Y": configuration.y_bits, "C": configuration.edge_column_bits,
             "R": configuration.edge_height_bits, "E": configuration.edge_word_bits,
             "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits,
-            "O": configuration.order_bits, "N": configuration.node_bits}
+            "O": configuration.order_bits, "Q": configuration.round_bits,
+            "N": configuration.node_bits}
 
 
 def test_title_has_the_version():
@@ -91,6 +92,12 @@ CONFIGURATIONS = {
     "nodes": MachineConfiguration("3x(PMT)", 16, 17, fraction_bits=6, maximum_nodes=9),
     "nodes, few fractions": MachineConfiguration("2x(PMC)", 300, 40, sub_bits=3, fraction_bits=0,
                                                  order_bits=5),
+    "direct": MachineConfiguration("3xPD2xM", 16, 17, fraction_bits=6, maximum_nodes=9,
+                                   order_bits=13),
+    "direct, without rounds": MachineConfiguration("2xPDM", 16, 17, fraction_bits=0,
+                                                   packet="contiguous"),
+    "direct, few fractions": MachineConfiguration("2xPD2xM", 300, 40, sub_bits=3, fraction_bits=0,
+                                                  order_bits=5),
     "flat, least": MachineConfiguration("PM", 1, 1, sub_bits=1, depth_bits=2, fraction_bits=0,
                                         shading="flat"),
 }
@@ -105,7 +112,8 @@ def test_some_machines_have_guard_bits_and_some_have_none():
 def test_width_formulas(name):
     configuration = CONFIGURATIONS[name]
     values = symbols(configuration)
-    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel, order, node) = values.values()
+    (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel, order, rounds,
+     node) = values.values()
 
     def guard(v):
         g = 0
@@ -124,7 +132,11 @@ def test_width_formulas(name):
     colors = 24 if configuration.shading == "flat" else 9 * channel
     planes = 8 + 3 * y + 2 * x + 1 + 6 * e
     vertices = 8 + 3 * (2 * b + d + 24)  # the longer body where few fraction bits are carried
-    longest = max(planes + 3 * depth + colors, vertices) + order + node
+    last = (configuration.maximum_nodes - 1).bit_length() if configuration.merges_directly else 0
+    assert rounds == max(0, order - last)
+    assert commands.prepared_triangle_layout(configuration)["planes"].get("round", 0) == rounds
+    assert commands.triangle_layout(configuration).get("round", 0) == rounds
+    longest = max(planes + 3 * depth + colors, vertices) + rounds + node
     assert node == (configuration.maximum_nodes.bit_length() if configuration.merge else 0)
     assert commands.command_words(configuration) == -(-longest // 32)
     if name == "tiny":
@@ -179,13 +191,16 @@ def test_triangle_offsets():
     assert f"Vertices 1 and 2 follow, {vertex} bits each." in DOCUMENT.read_text(encoding="utf-8")
 
 
-OF_NODES = MachineConfiguration(**PRESETS["tiny"] | {"cards": "2x(PMC)"}, order_bits=5,
-                                list_words=8)
+def of_nodes(cards):
+    return MachineConfiguration(**PRESETS["tiny"] | {"cards": cards}, order_bits=5, list_words=8)
+
+
+OF_NODES = of_nodes("2x(PMC)")
 
 
 def test_the_last_fields_of_a_triangle_are_its_share():
     rows = table("last fields", "their bits")
-    assert [row["bits"] for row in rows] == ["O", "N"]
+    assert [row["bits"] for row in rows] == ["Q", "N"]
     for name, layout in (("PREPARED_TRIANGLE", commands.prepared_triangle_layout(OF_NODES)),
                          ("TRIANGLE", commands.triangle_layout(OF_NODES))):
         documented = [(row["last fields"].split(".")[-1], int(row[f"{name}: first bit"]),
@@ -195,16 +210,20 @@ def test_the_last_fields_of_a_triangle_are_its_share():
     [planes] = [path for path, *_ in hardware_fields(
         layouts.prepared_triangle_layout(OF_NODES), 0) if path.endswith("round")]
     assert planes == rows[0]["last fields"]
+    direct = of_nodes("2xPD2xM")
+    assert f"`planes.round` has {direct.round_bits}." in DOCUMENT.read_text(encoding="utf-8")
 
 
-def test_what_a_cage_of_nodes_answers():
+@pytest.mark.parametrize("cards", ["2x(PMC)", "2x(PMS)F", "2xPD2xM"])
+def test_what_a_cage_of_nodes_answers(cards):
     """At boot, and to each command, as the page has it."""
-    organisation = organisation_of(OF_NODES)
+    organisation = organisation_of(of_nodes(cards))
     boot = [(kind.name, NOTHING if value is None else f"0x{value:08x}")
             for kind, value in owed_at_boot(organisation)]
-    assert boot == [(row["kind in turn"], row["value in turn"]) for row in table("kind in turn")]
-    answers = {row["command to 2x(PMC) with lists"]: row["answers"].replace(NOTHING, "").split()
-               for row in table("command to 2x(PMC) with lists")}
+    header = f"{cards} boots with"
+    assert boot == [(row[header], row["value"]) for row in table(header)]
+    header = "command to a cage with lists"
+    answers = {row[header]: row[cards].replace(NOTHING, "").split() for row in table(header)}
     assert set(Opcode.__members__) - set(answers) == {"READ_DEPTH"}
     for name, kinds in answers.items():
         owed = owed_to(organisation, commands.command(Opcode[name]))
@@ -261,6 +280,24 @@ def test_unit_numbers(skewed):
             order[-1] += f"^x{interlace.skew_bit}"
         (documented,) = [row[name] for name in row if name != "units"]
         assert documented.replace(NOTHING, "").split() == order
+
+
+def test_diagonal_units():
+    for row in table("units behind D"):
+        units = int(row["units behind D"])
+        interlace = Interlace(units.bit_length() - 1, 21, 13, diagonal=True)
+        step = int(row["step"])
+        assert interlace.diagonal_step == step == (5 * units // 8) | 1
+        y, x = np.mgrid[:13, :21]
+        pitch = ceil(21 / units)
+        assert (interlace.pitch, interlace.words) == (pitch, 13 * pitch)
+        unit, address = (x + step * y) % units, pitch * y + x // units
+        np.testing.assert_array_equal(interlace.unit(x, y), unit)
+        np.testing.assert_array_equal(interlace.address(x, y), address)
+        np.testing.assert_array_equal(
+            (address % pitch * units + (unit - step * y) % units, address // pitch), (x, y))
+    tile = [[int(unit) for unit in list(row.values())[1:]] for row in table("y", "unit of x = 0")]
+    np.testing.assert_array_equal(Interlace(2, 16, 16, diagonal=True).tile, tile)
 
 
 def test_unit_numbers_in_squares():
