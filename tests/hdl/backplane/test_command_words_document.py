@@ -2,12 +2,12 @@
 
 import re
 from math import ceil
-from pathlib import Path
 
 import numpy as np
 import pytest
 from amaranth.hdl import Const
 from amaranth.lib import data
+from command_words_tables import DOCUMENT, NOTHING, TABLES, table
 from hdl_bench.bench import simulate
 from hdl_bench.cage import Run
 from hdl_bench.pictures import exact_words
@@ -21,7 +21,6 @@ from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
-from cardcage.golden.specification.interlace import Interlace
 from cardcage.hdl.backplane import words as layouts
 from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.machine import Machine
@@ -29,31 +28,7 @@ from cardcage.testbenches.engines.engine import Job
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.conversation import owed_at_boot, owed_to
 
-DOCUMENT = Path(__file__).parents[3] / "docs" / "command-words.md"
 TINY = MachineConfiguration(**PRESETS["tiny"])
-NOTHING = "\N{EN DASH}"  # an empty cell
-
-
-def tables():
-    """Header → list of rows, each a dict; cells without their code marks."""
-    found, lines = {}, []
-    for line in [*DOCUMENT.read_text(encoding="utf-8").splitlines(), ""]:
-        if line.startswith("|"):
-            lines.append([cell.strip().replace("`", "") for cell in line.strip("|").split("|")])
-        elif lines:
-            header, _, *rows = lines
-            found[tuple(header)] = [dict(zip(header, row, strict=True)) for row in rows]
-            lines = []
-    return found
-
-
-TABLES = tables()
-
-
-def table(*columns):
-    """The one table that has these columns."""
-    (rows,) = [rows for header, rows in TABLES.items() if set(columns) <= set(header)]
-    return rows
 
 
 def symbols(configuration):
@@ -266,49 +241,6 @@ def test_numbers(column, kinds, others):
     named = {name: int(number) for name, number in documented.items() if name != NOTHING}
     assert named == {kind.name: int(kind) for kind in kinds}
     assert {number: name for name, number in documented.items() if name == NOTHING} == others
-
-
-@pytest.mark.parametrize("skewed", [False, True])
-def test_unit_numbers(skewed):
-    (rows,) = [rows for header, rows in TABLES.items()
-               if header[0] == "units" and ("skewed" in header[1]) == skewed]
-    assert len(rows) == 5
-    for row in rows:
-        interlace = Interlace(int(row["units"]).bit_length() - 1, 8, 8, skew=skewed)
-        order = [f"{axis}{bit}" for axis, bit in interlace.bit_order]
-        if interlace.skew_bit is not None:
-            order[-1] += f"^x{interlace.skew_bit}"
-        (documented,) = [row[name] for name in row if name != "units"]
-        assert documented.replace(NOTHING, "").split() == order
-
-
-def test_diagonal_units():
-    for row in table("units behind D"):
-        units = int(row["units behind D"])
-        interlace = Interlace(units.bit_length() - 1, 21, 13, diagonal=True)
-        step = int(row["step"])
-        assert interlace.diagonal_step == step == (5 * units // 8) | 1
-        y, x = np.mgrid[:13, :21]
-        pitch = ceil(21 / units)
-        assert (interlace.pitch, interlace.words) == (pitch, 13 * pitch)
-        unit, address = (x + step * y) % units, pitch * y + x // units
-        np.testing.assert_array_equal(interlace.unit(x, y), unit)
-        np.testing.assert_array_equal(interlace.address(x, y), address)
-        np.testing.assert_array_equal(
-            (address % pitch * units + (unit - step * y) % units, address // pitch), (x, y))
-    tile = [[int(unit) for unit in list(row.values())[1:]] for row in table("y", "unit of x = 0")]
-    np.testing.assert_array_equal(Interlace(2, 16, 16, diagonal=True).tile, tile)
-
-
-def test_unit_numbers_in_squares():
-    (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("total units", "side")]
-    assert len(rows) == 4
-    for row in rows:
-        units, side, share = (int(row[name]).bit_length() - 1
-                              for name in ("total units", "side", "each"))
-        interlace = Interlace(units, 64, 64, square_bits=side, share_bits=share)
-        *_, documented = row.values()
-        assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
 
 
 def example():
