@@ -59,6 +59,12 @@ def parse_cards(text: str) -> str:
         raise InputError(f"cards: {text!r}: two counts in a row; write one before a card or group")
     while cards != spelled:  # each pass opens the innermost groups
         spelled, cards = cards, _REPEATED.sub(expand, cards)
+    if re.search(r"(?<!\d)X", cards):
+        raise InputError(f"cards: {text!r}: an x without a number before it; it counts, as in "
+                         "4x(PMM)")
+    if re.search(r"\d(?![\dX*×])", cards):
+        raise InputError(f"cards: {text!r}: a number without an x after it; write a count as in "
+                         "4x(PMM)")
     if set(cards) - set(_LETTERS):
         raise InputError(f"cards: {text!r}: parentheses and counts do not match; write groups as "
                          "in 4x(PMM)")

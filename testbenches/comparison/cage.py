@@ -15,7 +15,7 @@ from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.machine_plan import plan
 from ...golden.reference.exact import depth_complexity
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import parse_cards
+from ...golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -52,8 +52,11 @@ class Cage:
 
     def options(self, asked: MachineOptions) -> MachineOptions:
         """What is asked of this cage, of all that is asked of every one."""
+        merge = merge_card(self.spelled or "")
         return replace(asked, cards=self.cards, retain=self.retained or None,
-                       list_words=asked.list_words if self.retained else None)
+                       list_words=asked.list_words if self.retained else None,
+                       packet=None if merge is None else asked.packet,
+                       queue=asked.queue if merge == DIRECT_MERGE else None)
 
 
 @dataclass(frozen=True)
@@ -119,13 +122,13 @@ class CageRun:
 
     @property
     def bound_by(self) -> str:
-        """``draw`` or ``merge``, if a frame takes as long as that, within a twentieth; else ``scan``:
-        a picture is shown from the beginning of a scan on, so that it takes whole scans."""
+        """``draw`` or ``merge``, if a frame takes as long as that, within a twentieth; else
+        ``scan``: a picture is shown from the beginning of a scan on, so it takes whole scans."""
         parts = {"draw": self.clocks.draw, "merge": self.clocks.merge}
         busiest = max(parts, key=parts.__getitem__)
         # On a bus the next frame is drawn while one is merged.
-        least = max(parts.values()) if self.configuration.snoops else sum(parts.values())
-        return busiest if self.clocks.frame <= MEASURED_ALIKE * least else "scan"
+        work = max(parts.values()) if self.configuration.snoops else sum(parts.values())
+        return busiest if self.clocks.frame <= MEASURED_ALIKE * work else "scan"
 
     @property
     def memory_bits(self) -> int:
