@@ -127,10 +127,10 @@ def _called(card: str) -> str:
 def _check_frame_units(cards: str) -> None:
     """The frame units are at the right end, after the last node."""
     frame_units = len(cards) - len(cards.rstrip(FRAME_UNIT))
-    if not frame_units:
+    if FRAME_UNIT not in cards:
         raise InputError(f"cards: {cards!r}: no {_called(FRAME_UNIT)} at the right end, which "
                          "nodes send their pixels to; add some, as in 4x(PMMS)FF")
-    if FRAME_UNIT in cards.rstrip(FRAME_UNIT):
+    if not frame_units or FRAME_UNIT in cards.rstrip(FRAME_UNIT):
         raise InputError(f"cards: {cards!r}: {_called(FRAME_UNIT)} left of a node; put all of them "
                          "at the right end, as in 4x(PMMS)FF")
 

@@ -7,19 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
-from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
-from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.machine_plan import plan
-from ...golden.reference.exact import depth_complexity
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
+from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
 from ..sequence.scene_frames import SceneFrames
@@ -69,19 +65,6 @@ class Refused:
 
     def __str__(self) -> str:
         return f"{self.cage.label}: {self.reason}"
-
-
-@dataclass(frozen=True, eq=False)
-class NodeFigures:
-    """What one node did for a picture, in the machine's own count, and golden's.
-
-    ``sent``  pixels to the next node, to frame units, to memory units, or to the pins
-    """
-
-    fragments: int
-    golden_fragments: int
-    sent: int
-    golden_sent: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +148,7 @@ class CageJob:
         simulation = frames.simulation
         comparison = compare(configuration, display_list, simulation)
         golden = merge_cage(configuration, display_list)[1]
-        nodes = _nodes(configuration, display_list, simulation, golden)
+        nodes = node_figures(configuration, display_list, simulation, golden)
         views = [] if self.views is None else draw_views(configuration, self.views, self.engine,
                                                          self.random_memory)
         return CageRun(
@@ -175,23 +158,9 @@ class CageJob:
                                    for send in golden.sends]),
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
-            [*_picture_differences(comparison, frames), *_count_differences(nodes),
-             *_unit_differences(simulation, golden), *_view_differences(views)],
+            [*_picture_differences(comparison, frames), *count_differences(nodes),
+             *unit_differences(simulation, golden), *_view_differences(views)],
             [*resolution_warnings(configuration), *simulation.notes], views)
-
-
-def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
-           simulation: Simulation, golden: Traffic) -> list[NodeFigures]:
-    organisation = organisation_of(configuration)
-    sent, golden_sent = simulation.sent or [0], golden.sent
-    if configuration.scans_rank:  # the last one's: to the pins
-        golden_sent[-1] = configuration.width * configuration.height
-    return [NodeFigures(
-        fragments=sum(work.fragments for work in simulation.work if work.node == node),
-        golden_fragments=int(depth_complexity(
-            share_of_node(configuration, display_list, node)[1],
-            **organisation.resolution.shifts).sum()),
-        sent=sent[node], golden_sent=golden_sent[node]) for node in range(organisation.nodes)]
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
@@ -209,21 +178,5 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:
-    return [f"view {number} differs from its golden picture"
-            for number, view in enumerate(views) if not view.equal]
-
-
-def _count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
-    return [f"node {number} {verb} {got:,} {what}, golden {wanted:,}"
-            for number, node in enumerate(nodes)
-            for verb, what, got, wanted in (
-                ("drew", "fragments", node.fragments, node.golden_fragments),
-                ("sent", "pixels", node.sent, node.golden_sent))
-            if got != wanted]
-
-
-def _unit_differences(simulation: Simulation, golden: Traffic) -> list[str]:
-    wanted = golden.taken.sum(axis=0).tolist() if isinstance(golden, DirectTraffic) else []
-    return [f"memory unit {unit} took {got:,} fragments, golden {of_golden:,}"
-            for unit, (got, of_golden) in enumerate(zip(simulation.taken, wanted, strict=True))
-            if got != of_golden]
+    return [f"view {number}: {line}" for number, view in enumerate(views)
+            for line in view.differences]
