@@ -13,7 +13,7 @@ from ..golden.scene_argument import DisplayListScene, HardCaseScene, parse_scene
 from ..golden.scene_display_list import LoadedScene, SceneDisplayList, make_display_list
 from ..golden.scenes.camera import View
 from ..golden.scenes.lighting import Lighting
-from ..golden.specification.card_order import merge_card, parse_cards
+from ..golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
 from ..golden.specification.configuration import (
     MAXIMUM_SETUP_INTERVAL,
     MachineConfiguration,
@@ -112,18 +112,29 @@ class MachineOptions:
                                  "--fraction-bits")
         if self.max_error is not None or self.fraction_bits == "exact":
             settled["fraction_bits"] = None  # in place of the preset's
+        self._check_merging(settled["cards"])
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
         if self.setup is not None:
             settled |= SETUPS[self.setup]
-        if self.retain and merge_card(parse_cards(settled["cards"])) is None:
-            raise InputError(f"--retain: {settled['cards']} has no merge card, and so no list "
-                             "memory; end its nodes with merge cards, as in 2x(PMMC)")
         if self.shading != "auto":
             settled["shading"] = self.shading
         if self.size is not None:
             settled["width"], settled["height"] = self.size
         return settled
+
+    def _check_merging(self, cards: str) -> None:
+        """``InputError`` for what a cage without such merge cards cannot be asked."""
+        merge = merge_card(parse_cards(cards))
+        if self.retain and merge is None:
+            raise InputError(f"--retain: {cards} has no merge card, and so no list memory; end its "
+                             "nodes with merge cards, as in 2x(PMMC)")
+        if self.packet is not None and merge is None:
+            raise InputError(f"--packet: {cards} has no merge card, and so one node, which draws "
+                             "all; leave it out, or end nodes with merge cards, as in 2x(PMMC)")
+        if self.queue is not None and merge != DIRECT_MERGE:
+            raise InputError(f"--queue: {cards} has no direct merge; leave it out, or take one, as "
+                             "in PPPPDMMMM")
 
     def for_plan(self) -> dict[str, Any]:
         """What is asked of ``plan`` besides a display list, which has its own size.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from ..golden.cycles.frame_clocks import predict_frame
 from ..golden.planning.machine_plan import plan
@@ -17,7 +17,7 @@ from .frames.setup_timing import setup_timing
 from .machine_options import resolution_warnings
 from .render import DEFAULT_SCENE, RenderOptions
 from .sequence.scene_frames import SceneFrames
-from .sequence.sequence_run import Depths, SequenceFrame, simulate_sequence
+from .sequence.sequence_run import Reading, SequenceFrame, simulate_sequence
 from .support.atomic_output import atomic_folder, output_errors
 
 
@@ -34,7 +34,7 @@ class FramesOptions(RenderOptions):
     frames: int | None = None
     turn: float | None = None
     path: Path | None = None
-    depth: Depths = "last"
+    depth: Reading = "last"
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +95,9 @@ class FramesJob:
     def _drawn(self, progress: Progress | None, report: Path | None = None) -> FramesRendering:
         frames = tuple(simulate_sequence(
             self.configuration, self.lists, self.options.engine,
-            triangles=self.lists.most_triangles, depths=self.options.depth, progress=progress,
+            triangles=self.lists.most_triangles, depths=self.options.depth,
+            # A bus merges one picture while the next one is drawn, unless asked in between.
+            counters="last" if self.configuration.snoops else "all", progress=progress,
             memory_seed=self.options.random_memory))
         shown = next((frame for frame in frames if not frame.equal), frames[-1])
         scene = self.lists.scene(shown.number)
@@ -114,6 +116,8 @@ def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | N
     """
     began = time.perf_counter()
     options = options or FramesOptions(frames=1)
+    if options.depth not in get_args(Reading):
+        raise InputError(f"depth: {options.depth!r} is none of {', '.join(get_args(Reading))}")
     lists = SceneFrames(scene, options, frames=options.frames, turn=options.turn,
                         path=options.path)
     configuration = plan(lists, **options.for_plan()).configuration

@@ -66,10 +66,15 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
     if fraction_bits is not None and max_error:
         raise InputError("max error: the fraction bits are given as well; leave one of them out")
     lists = [display_list] if isinstance(display_list, DisplayList) else display_list
+    if not lists:
+        raise InputError("display list: none is given; a machine is planned for one at least")
     picture = {name: getattr(lists[0], name) for name in ("width", "height", "depth_bits")}
     for name, given in picture.items():
         if rest.pop(name, given) != given:
             raise InputError(f"{name}: the display list has {given}; a plan is for the list's own")
+        if any(getattr(each, name) != given for each in lists):
+            raise InputError(f"{name}: the display lists differ; one machine has one, take lists "
+                             "that are alike")
     own_sub_bits = max(each.sub_bits for each in lists)
     sub_bits = max(map(fewest_sub_bits, lists))
     fixed = {"cards": cards, **picture}

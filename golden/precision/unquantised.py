@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,11 @@ from numpy.typing import NDArray
 from ..reference.coverage import FRAGMENT_LIMIT
 from ..scene_argument import parse_scene
 from ..scene_display_list import mesh_of_scene
+from ..scenes.camera import FRAMED, View, framing_camera
 from ..scenes.clipping import clip
-from ..scenes.lighting import Shading
+from ..scenes.lighting import DEFAULT_LIGHTING, Lighting, Shading
 from ..scenes.mesh import Mesh
-from ..scenes.mesh_display_list import corners_of_mesh
+from ..scenes.mesh_display_list import corners_of_mesh, facing
 from ..scenes.quantise import PictureFormat, quantise_colors, quantise_depths, quantise_positions
 from ..specification.display_list import DisplayList
 from ..specification.picture import NO_PRIMITIVE
@@ -66,11 +68,17 @@ class UnquantisedScene:
     background: tuple[int, int, int]
 
     @classmethod
-    def of_mesh(cls, mesh: Mesh, display_list: DisplayList, shading: Shading) -> UnquantisedScene:
-        """What ``display_list``, which was made from ``mesh``, was before it was quantised."""
+    def of_mesh(cls, mesh: Mesh, display_list: DisplayList, shading: Shading, *,
+                view: View = FRAMED, lighting: Lighting = DEFAULT_LIGHTING, cull: bool = False
+                ) -> UnquantisedScene:
+        """What ``display_list``, which was made from ``mesh`` seen so, was before it was quantised.
+        """
         picture = PictureFormat(display_list.width, display_list.height, display_list.sub_bits,
                                 display_list.depth_bits)
-        corners = clip(corners_of_mesh(mesh, picture, shading=shading), picture).corners
+        corners = clip(corners_of_mesh(mesh, picture, shading=shading, lighting=lighting,
+                                       camera=framing_camera(mesh, view)), picture).corners
+        if cull:  # as the list does it: by the quantised vertices
+            corners = corners[facing(quantise_positions(corners[..., :4], picture))]
         return cls(corners, picture.width, picture.height, display_list.background)
 
     @classmethod
@@ -112,16 +120,16 @@ class UnquantisedScene:
 
 
 def unquantised_scene(scene: str | Path, display_list: DisplayList,
-                      shading: Shading = "gouraud") -> UnquantisedScene:
+                      shading: Shading = "gouraud", **looking: Any) -> UnquantisedScene:
     """What ``display_list``, which ``make_display_list`` made of ``scene``, was made from.
 
-    A saved list, a hard case or random triangles exist as integers only, and are taken as they
-    are.
+    ``looking``: the same ``view``, ``lighting`` and ``cull``.  A saved list, a hard case or random
+    triangles exist as integers only, and are taken as they are.
     """
     mesh = mesh_of_scene(parse_scene(scene))
     if mesh is None:
         return UnquantisedScene.of_display_list(display_list)
-    return UnquantisedScene.of_mesh(mesh, display_list, shading)
+    return UnquantisedScene.of_mesh(mesh, display_list, shading, **looking)
 
 
 @dataclass(frozen=True, eq=False)

@@ -74,7 +74,7 @@ def display_list_of_corners(
     depth = quantise_depths(clipped[..., :4], picture)
     color = quantise_colors(clipped[..., 4:])
     if cull:
-        keep = _facing(position)
+        keep = facing(position)
         position, depth, color = position[keep], depth[keep], color[keep]
     return DisplayList(
         width=picture.width,
@@ -88,7 +88,7 @@ def display_list_of_corners(
     )
 
 
-def _facing(position: NDArray[np.int32]) -> NDArray[np.bool_]:
+def facing(position: NDArray[np.int32]) -> NDArray[np.bool_]:
     """True where corners run counter-clockwise as seen in the picture, whose y points down."""
     a, b, c = (position[:, i].astype(np.int64) for i in range(3))
     return np.asarray(

@@ -59,6 +59,12 @@ def parse_cards(text: str) -> str:
         raise InputError(f"cards: {text!r}: two counts in a row; write one before a card or group")
     while cards != spelled:  # each pass opens the innermost groups
         spelled, cards = cards, _REPEATED.sub(expand, cards)
+    if re.search(r"(?<!\d)X", cards):
+        raise InputError(f"cards: {text!r}: an x without a number before it; it counts, as in "
+                         "4x(PMM)")
+    if re.search(r"\d(?![\dX*×])", cards):
+        raise InputError(f"cards: {text!r}: a number without an x after it; write a count as in "
+                         "4x(PMM)")
     if set(cards) - set(_LETTERS):
         raise InputError(f"cards: {text!r}: parentheses and counts do not match; write groups as "
                          "in 4x(PMM)")
@@ -121,10 +127,10 @@ def _called(card: str) -> str:
 def _check_frame_units(cards: str) -> None:
     """The frame units are at the right end, after the last node."""
     frame_units = len(cards) - len(cards.rstrip(FRAME_UNIT))
-    if not frame_units:
+    if FRAME_UNIT not in cards:
         raise InputError(f"cards: {cards!r}: no {_called(FRAME_UNIT)} at the right end, which "
                          "nodes send their pixels to; add some, as in 4x(PMMS)FF")
-    if FRAME_UNIT in cards.rstrip(FRAME_UNIT):
+    if not frame_units or FRAME_UNIT in cards.rstrip(FRAME_UNIT):
         raise InputError(f"cards: {cards!r}: {_called(FRAME_UNIT)} left of a node; put all of them "
                          "at the right end, as in 4x(PMMS)FF")
 

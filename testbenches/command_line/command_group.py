@@ -6,6 +6,7 @@ import os
 import shlex
 import sys
 import traceback
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, NoReturn
@@ -57,6 +58,8 @@ class OneLineErrors(click.Command):
                 sys.stdout.flush()  # at the end of the program it would be too late for a status
                 sys.exit(status)
         except Interrupted as interruption:
+            # Of hardware that was made and is not elaborated any more nobody wants to hear.
+            warnings.simplefilter("ignore")
             sys.exit(interruption.status)
         except click.ClickException as error:
             _fail(error.format_message(), EXIT_WRONG_INPUT)

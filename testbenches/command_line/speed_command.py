@@ -100,6 +100,8 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
         case_names() if everything else DEFAULT_CASES)
     orders = orders or (ORDERS if everything else ORDERS[:1])
     looking = MachineOptions(view=view, zoom=zoom, background=background, cull=cull, light=light)
+    if baseline is not None and engine == MODEL:
+        raise InputError("--against: only what is simulated is compared; leave out --engine model")
     before = None if baseline is None else load_baseline(baseline)
     with ExitStack() as outputs:
         files = {path: outputs.enter_context(atomic_file(path, option))

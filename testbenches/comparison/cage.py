@@ -7,19 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
-from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
-from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.machine_plan import plan
-from ...golden.reference.exact import depth_complexity
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import parse_cards
+from ...golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
 from ...golden.specification.configuration import MachineConfiguration
-from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
+from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
 from ..sequence.scene_frames import SceneFrames
@@ -52,8 +48,11 @@ class Cage:
 
     def options(self, asked: MachineOptions) -> MachineOptions:
         """What is asked of this cage, of all that is asked of every one."""
+        merge = merge_card(self.spelled or "")
         return replace(asked, cards=self.cards, retain=self.retained or None,
-                       list_words=asked.list_words if self.retained else None)
+                       list_words=asked.list_words if self.retained else None,
+                       packet=None if merge is None else asked.packet,
+                       queue=asked.queue if merge == DIRECT_MERGE else None)
 
 
 @dataclass(frozen=True)
@@ -66,19 +65,6 @@ class Refused:
 
     def __str__(self) -> str:
         return f"{self.cage.label}: {self.reason}"
-
-
-@dataclass(frozen=True, eq=False)
-class NodeFigures:
-    """What one node did for a picture, in the machine's own count, and golden's.
-
-    ``sent``  pixels to the next node, to frame units, to memory units, or to the pins
-    """
-
-    fragments: int
-    golden_fragments: int
-    sent: int
-    golden_sent: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,13 +105,13 @@ class CageRun:
 
     @property
     def bound_by(self) -> str:
-        """``draw`` or ``merge``, if a frame takes as long as that, within a twentieth; else ``scan``:
-        a picture is shown from the beginning of a scan on, so that it takes whole scans."""
+        """``draw`` or ``merge``, if a frame takes as long as that, within a twentieth; else
+        ``scan``: a picture is shown from the beginning of a scan on, so it takes whole scans."""
         parts = {"draw": self.clocks.draw, "merge": self.clocks.merge}
         busiest = max(parts, key=parts.__getitem__)
         # On a bus the next frame is drawn while one is merged.
-        least = max(parts.values()) if self.configuration.snoops else sum(parts.values())
-        return busiest if self.clocks.frame <= MEASURED_ALIKE * least else "scan"
+        work = max(parts.values()) if self.configuration.snoops else sum(parts.values())
+        return busiest if self.clocks.frame <= MEASURED_ALIKE * work else "scan"
 
     @property
     def memory_bits(self) -> int:
@@ -162,7 +148,7 @@ class CageJob:
         simulation = frames.simulation
         comparison = compare(configuration, display_list, simulation)
         golden = merge_cage(configuration, display_list)[1]
-        nodes = _nodes(configuration, display_list, simulation, golden)
+        nodes = node_figures(configuration, display_list, simulation, golden)
         views = [] if self.views is None else draw_views(configuration, self.views, self.engine,
                                                          self.random_memory)
         return CageRun(
@@ -172,23 +158,9 @@ class CageJob:
                                    for send in golden.sends]),
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
-            [*_picture_differences(comparison, frames), *_count_differences(nodes),
-             *_unit_differences(simulation, golden), *_view_differences(views)],
+            [*_picture_differences(comparison, frames), *count_differences(nodes),
+             *unit_differences(simulation, golden), *_view_differences(views)],
             [*resolution_warnings(configuration), *simulation.notes], views)
-
-
-def _nodes(configuration: MachineConfiguration, display_list: DisplayList,
-           simulation: Simulation, golden: Traffic) -> list[NodeFigures]:
-    organisation = organisation_of(configuration)
-    sent, golden_sent = simulation.sent or [0], golden.sent
-    if configuration.scans_rank:  # the last one's: to the pins
-        golden_sent[-1] = configuration.width * configuration.height
-    return [NodeFigures(
-        fragments=sum(work.fragments for work in simulation.work if work.node == node),
-        golden_fragments=int(depth_complexity(
-            share_of_node(configuration, display_list, node)[1],
-            **organisation.resolution.shifts).sum()),
-        sent=sent[node], golden_sent=golden_sent[node]) for node in range(organisation.nodes)]
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
@@ -206,21 +178,5 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:
-    return [f"view {number} differs from its golden picture"
-            for number, view in enumerate(views) if not view.equal]
-
-
-def _count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
-    return [f"node {number} {verb} {got:,} {what}, golden {wanted:,}"
-            for number, node in enumerate(nodes)
-            for verb, what, got, wanted in (
-                ("drew", "fragments", node.fragments, node.golden_fragments),
-                ("sent", "pixels", node.sent, node.golden_sent))
-            if got != wanted]
-
-
-def _unit_differences(simulation: Simulation, golden: Traffic) -> list[str]:
-    wanted = golden.taken.sum(axis=0).tolist() if isinstance(golden, DirectTraffic) else []
-    return [f"memory unit {unit} took {got:,} fragments, golden {of_golden:,}"
-            for unit, (got, of_golden) in enumerate(zip(simulation.taken, wanted, strict=True))
-            if got != of_golden]
+    return [f"view {number}: {line}" for number, view in enumerate(views)
+            for line in view.differences]

@@ -139,6 +139,9 @@ def headline(comparison: CageComparison) -> list[str]:
     else:
         lines = [f"each as its golden picture, but {len(comparison.pictures)} pictures: "
                  + "; ".join(_picture(group) for group in comparison.pictures)]
+    if any(run.views for run in runs):
+        lines.append(f"{len(next(run.views for run in runs if run.views)):,} views of it on each, "
+                     "compared likewise; figures are of the first, but for those of all")
     listed = comparison.scene.display_list
     return [*lines, f"{comparison.scene.name}: {listed.triangles:,} triangles at "
             f"{listed.width}x{listed.height}"]

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ...golden.merging.cage import merge_cage
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.display_list import DisplayList
+from ..frames.node_counts import count_differences, node_figures, unit_differences
 from ..sequence.scene_frames import SceneFrames
 from ..sequence.sequence_run import SequenceFrame, simulate_sequence
 
@@ -14,12 +17,12 @@ from ..sequence.sequence_run import SequenceFrame, simulate_sequence
 class ViewFigures:
     """What a cage did for one view.
 
-    ``equal``         it was the golden picture, on every scan
+    ``differences``   a line each: what is not as the golden model has it
     ``busiest_share`` the most fragments of a node, as a part of all; 0 where there are none
     ``sent``          pixels between nodes, in the machine's own count
     """
 
-    equal: bool
+    differences: Sequence[str]
     draw: int
     merge: int
     fragments: int
@@ -43,20 +46,22 @@ class Spread:
 def draw_views(configuration: MachineConfiguration, lists: SceneFrames, engine: str,
                memory_seed: int | None) -> list[ViewFigures]:
     """Every view on one machine, which is booted once; raises what ``simulate_sequence`` does."""
-    return [_figures(configuration, frame) for frame in simulate_sequence(
+    return [_figures(configuration, lists[frame.number], frame) for frame in simulate_sequence(
         configuration, lists, engine, triangles=lists.most_triangles, memory_seed=memory_seed)]
 
 
-def _figures(configuration: MachineConfiguration, frame: SequenceFrame) -> ViewFigures:
+def _figures(configuration: MachineConfiguration, display_list: DisplayList,
+             frame: SequenceFrame) -> ViewFigures:
     simulation = frame.simulation
-    sent = simulation.sent[:-1] if configuration.scans_rank else simulation.sent  # not to the pins
-    drawn: dict[int, int] = {}
-    for work in simulation.work:
-        drawn[work.node] = drawn.get(work.node, 0) + work.fragments
-    fragments = sum(drawn.values())
+    golden = merge_cage(configuration, display_list)[1]
+    nodes = node_figures(configuration, display_list, simulation, golden)
+    differences = [] if frame.equal else ["the picture differs from the golden one"]
+    differences += [*count_differences(nodes), *unit_differences(simulation, golden)]
+    sent = nodes[:-1] if configuration.scans_rank else nodes  # not to the pins
+    fragments = [node.fragments for node in nodes]
     draw, merged = simulation.draw_cycles, simulation.merge_cycles
-    return ViewFigures(frame.equal, draw, 0 if merged is None else merged - draw, fragments,
-                       max(drawn.values()) / max(fragments, 1), sum(sent))
+    return ViewFigures(differences, draw, 0 if merged is None else merged - draw, sum(fragments),
+                       max(fragments) / max(sum(fragments), 1), sum(node.sent for node in sent))
 
 
 #: The figures whose spread is told, by what they are called.

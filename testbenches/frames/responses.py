@@ -47,7 +47,8 @@ class Simulation:
                          -1 where the pixel's unit belongs to no processing element; None where
                          they were not read
     ``resolution``       width and height that the machine reported
-    ``work``             one entry per processing element, left to right
+    ``work``             one entry per processing element, left to right; empty, as are ``sent``,
+                         ``taken`` and ``followed``, where counters were not read
     ``owned``, ``total`` memory units in some domain, memory units in the cage
     ``boot_cycles``      reset to ready
     ``draw_cycles``      frame start to the last processing element's done
@@ -84,7 +85,7 @@ class Simulation:
     followed: Sequence[int] = ()
 
 
-#: In place of a read-back, of a frame whose depths were not read.
+#: In place of a read-back or a reading, of a frame of which nothing was read.
 NOT_READ = -1
 
 
@@ -140,10 +141,11 @@ class Answers:
 
         Its work is what that ``reading`` of the counters says, its activity the record that ends
         with the reading, if the engine keeps any; its depths are those of that ``read_back``, by
-        default as if each frame's were read back once, or ``NOT_READ``.
+        default as if each frame's were read back once, or ``NOT_READ``, as ``reading`` may be.
         """
         run, organisation = self._run, self._organisation
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
+        read = reading != NOT_READ
         [units] = self._fields(ResponseKind.UNITS)
         return Simulation(
             video=next(scan.picture for scan in run.scans if scan.cycle > shown),
@@ -153,11 +155,11 @@ class Answers:
             work=[Work(node, domain["first"], domain["units"], int(fragments), int(busy))
                   for (node, *_), domain, fragments, busy in zip(
                       organisation.domains, self._domains, self.fragments[reading],
-                      self.busy[reading], strict=True)],
+                      self.busy[reading], strict=True)] if read else [],
             merge_cycles=self._values[ResponseKind.MERGED][number] if organisation.merges else None,
-            sent=self.sent[reading].tolist(),
-            taken=self.taken[reading].tolist(),
-            followed=self.followed[reading].tolist(),
+            sent=self.sent[reading].tolist() if read else [],
+            taken=self.taken[reading].tolist() if read else [],
+            followed=self.followed[reading].tolist() if read else [],
             owned=units["owned"],
             total=units["total"],
             boot_cycles=self._values[ResponseKind.BOOTED][0],
@@ -169,7 +171,7 @@ class Answers:
             seconds=run.seconds,
             build_seconds=run.build_seconds,
             notes=run.notes,
-            activity=run.activity[reading] if run.activity else None,
+            activity=run.activity[reading] if run.activity and read else None,
         )
 
     def _depth(self, read_back: int) -> NDArray[np.int64]:

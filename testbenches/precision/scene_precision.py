@@ -166,8 +166,9 @@ def measure_precision(scene: str | Path, options: PrecisionOptions | None = None
     loaded = load_scene(scene, options)
     machine = plan(loaded.display_list,
                    **replace(options, fraction_bits="exact").for_plan()).configuration
+    looking = {name: value for name, value in options.looking().items() if name != "background"}
     ideal = unquantised_scene(scene, loaded.display_list,
-                              "flat" if options.shading == "flat" else "gouraud")
+                              "flat" if options.shading == "flat" else "gouraud", **looking)
     shifts = organisation_of(machine).resolution.shifts
     display_list = fitted(machine, loaded.display_list)
     step("drawing the picture before quantisation")

@@ -51,7 +51,8 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
         "depths_compared": comparison.depths_compared,
         "depths_different": comparison.depths_different,
         "triangles": frame.triangles,
-        "fragments": fragments,
+        # Of a picture whose counters were not read, nobody knows.
+        "fragments": fragments if work else None,
         "draw": simulation.draw_cycles,
         "merged": simulation.merge_cycles,
         "shown": frame.shown,
@@ -62,8 +63,8 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
         "wrong_scans": frame.wrong_scans,
         "repeated_scans": simulation.repeated_scans,
         "a_picture_a_scan": before is not None and before.scans == 1,
-        "efficiency": (fragments / (len(work) * simulation.draw_cycles)
-                       if simulation.draw_cycles else 0.0),
+        "efficiency": None if not work else (
+            fragments / (len(work) * simulation.draw_cycles) if simulation.draw_cycles else 0.0),
         "per_pe": [{"fragments": element.fragments, "busy": element.busy_cycles}
                    for element in work],
         "sent": list(simulation.sent),

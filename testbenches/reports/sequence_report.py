@@ -80,11 +80,13 @@ def sequence_chart(frames: Sequence[dict[str, Any]], scan: int) -> str:
         clocks.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
         clocks.set_ylim(bottom=0)
         clocks.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
-        mean = [sum(busy) / len(busy) for busy in
-                ([element["fragments"] for element in frame["per_pe"]] for frame in frames)]
-        most = [max(element["fragments"] for element in frame["per_pe"]) for frame in frames]
-        share.step(numbers, mean, where="mid", color=FRAGMENTS_COLOR, label="of an element, mean")
-        share.step(numbers, most, where="mid", color=BUSY_COLOR, label="of the busiest")
+        counted = [(frame["number"], [element["fragments"] for element in frame["per_pe"]])
+                   for frame in frames if frame["per_pe"]]
+        known = [number for number, _ in counted]
+        share.step(known, [sum(each) / len(each) for _, each in counted], where="mid", marker=".",
+                   color=FRAGMENTS_COLOR, label="of an element, mean")
+        share.step(known, [max(each) for _, each in counted], where="mid", marker=".",
+                   color=BUSY_COLOR, label="of the busiest")
         share.set_ylabel("fragments")
         share.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
         share.set_ylim(bottom=0)

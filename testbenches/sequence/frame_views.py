@@ -22,6 +22,8 @@ def turning(start: tuple[float, float], zoom: float, frames: int, turn: float) -
     """Views of a scene that turns about what is up: from ``start``, azimuth and elevation, by
     ``turn`` degrees each."""
     azimuth, elevation = start
+    if not math.isfinite(turn * frames):
+        raise InputError(f"--turn: {turn!r} degrees over {frames} pictures are no angle")
     return [View((azimuth + turn * number, elevation), zoom) for number in range(frames)]
 
 
@@ -32,7 +34,7 @@ def read_path(path: Path) -> list[View]:
     ``InputError``, with the line, for a file that is no path.
     """
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with path.open(encoding="utf-8-sig", newline="") as file:
             lines = [(number, line) for number, line in enumerate(csv.reader(file), 1)
                      if any(word.strip() for word in line)]
     except OSError as error:

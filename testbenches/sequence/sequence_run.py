@@ -30,8 +30,8 @@ from ..frames.frame_job import frame_commands
 from ..frames.responses import NOT_READ, Answers, MachineError, Simulation
 from ..frames.simulation import engine_errors
 
-#: Whose depths are read back.
-Depths = Literal["last", "all"]
+#: Of which pictures something is read back.
+Reading = Literal["last", "all"]
 
 _READ_DEPTH = commands.command(Opcode.READ_DEPTH)
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
@@ -43,21 +43,21 @@ _OTHERS = 8
 class SequenceCommands(Sequence[int]):
     """The host's commands for all pictures, each picture's made when they are asked for.
 
-    Counters are read after each picture, depths after the last, or after each.  ``starts`` are the
-    places of the ``FRAME_START`` of those that have been asked for one after another.
+    Depths and counters are read after the last picture, or after each.  ``starts`` are the places
+    of the ``FRAME_START`` of those that have been asked for one after another.
     """
 
     def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList],
-                 depths: Depths) -> None:
+                 depths: Reading, counters: Reading = "all") -> None:
         self.starts: list[int] = []
         self._configuration = configuration
         self._lists = lists
-        self._depths = depths
+        self._readings = {_READ_DEPTH: depths, _READ_COUNTERS: counters}
 
     def of(self, number: int) -> list[int]:
         words = frame_commands(self._configuration, self._lists[number])
-        read = self._depths == "all" or number == len(self._lists) - 1
-        return [*words, *[_READ_DEPTH] * read, _READ_COUNTERS]
+        return [*words, *(word for word, whose in self._readings.items()
+                          if whose == "all" or number == len(self._lists) - 1)]
 
     def __iter__(self) -> Iterator[int]:
         self.starts, place = [], 0
@@ -80,7 +80,7 @@ class SequenceCommands(Sequence[int]):
 class SequenceFrame:
     """One picture of a sequence, as it left the machine, judged.
 
-    ``simulation``  its first scan, its depths where they were read back, its work
+    ``simulation``  its first scan; its depths, and its work, where they were read back
     ``comparison``  with the golden picture
     ``first_scan``  the number of the scan that shows it first, counted from reset
     ``scans``       on how many it was seen; of the last picture, how many were waited for
@@ -103,20 +103,23 @@ class SequenceFrame:
 
 
 def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[DisplayList],
-                      engine: str, *, triangles: int, depths: Depths = "last",
-                      progress: Progress | None = None, memory_seed: int | None = None,
+                      engine: str, *, triangles: int, depths: Reading = "last",
+                      counters: Reading = "all", progress: Progress | None = None,
+                      memory_seed: int | None = None,
                       stall_seed: int | None = None) -> Iterator[SequenceFrame]:
     """Each picture of ``lists``, drawn one after another and compared on every scan.
 
-    ``triangles`` is how many the longest list has.  Lists are asked for, and prepared, while
-    earlier ones are simulated.  Raises ``InputError`` for a list that is too wide for the machine
-    and an engine that cannot run here, ``MachineError`` where the machine fails, or a scan shows
-    what was never to be seen.
+    ``triangles`` is how many the longest list has; ``depths`` and ``counters`` say of which
+    pictures these are read: a machine that merges one while it draws the next does not do so where
+    it is asked in between.  Lists are asked for, and prepared, while earlier ones are simulated.
+    Raises ``InputError`` for a list that is too wide for the machine and an engine that cannot run
+    here, ``MachineError`` where the machine fails, or a scan shows what was never to be seen.
     """
     frames = len(lists)
-    often = [commands.command(Opcode.FRAME_END), _READ_COUNTERS] * frames
-    reads = [_READ_DEPTH] * (frames if depths == "all" else 1)
-    words = SequenceCommands(configuration, lists, depths)
+    often = [commands.command(Opcode.FRAME_END)] * frames
+    reads = [word for word, whose in ((_READ_DEPTH, depths), (_READ_COUNTERS, counters))
+             for _ in range(frames if whose == "all" else 1)]
+    words = SequenceCommands(configuration, lists, depths, counters)
     job = Job(
         configuration, words,
         responses_owed(organisation_of(configuration), [*often, *reads]),
@@ -125,11 +128,12 @@ def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[Displ
     with engine_errors(engine):
         run = make_engine(engine).run(job, progress)
     assert run.accepted is not None
-    return _judged(configuration, lists, run, run.accepted[words.starts], depths)
+    return _judged(configuration, lists, run, run.accepted[words.starts], depths, counters)
 
 
 def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], run: EngineRun,
-            starts: NDArray[np.int64], depths: Depths) -> Iterator[SequenceFrame]:
+            starts: NDArray[np.int64], depths: Reading, counters: Reading
+            ) -> Iterator[SequenceFrame]:
     """``starts``: the clock in which the machine took each picture's start, the first being 1."""
     answers = Answers(configuration, run)
     scan_clocks = configuration.cycles_per_scan
@@ -143,10 +147,10 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
     if any(scans[number].any() for number in scans if number < first[0]):
         raise MachineError("something was seen before the first picture was shown")
     for number, display_list in enumerate(lists):
-        read = depths == "all" or number == len(lists) - 1
-        simulation = answers.frame(number, reading=number,
-                                   read_back=(number if depths == "all" else 0) if read
-                                   else NOT_READ)
+        last = number == len(lists) - 1
+        simulation = answers.frame(number, **{
+            name: number if whose == "all" else 0 if last else NOT_READ
+            for name, whose in (("reading", counters), ("read_back", depths))})
         seen = range(first[number], ends[number])
         if not seen:
             raise MachineError(f"picture {number} was never shown: the next one took its scan")

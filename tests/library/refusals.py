@@ -14,6 +14,8 @@ BAD_SCENES_AND_MACHINES = [
     (["--size", "4096x4096", "--cards", "PM"], "words"),
     (["--fraction-bits", "65"], "fraction-bits"),
     (["--preset", "huge"], "huge"),
+    (["--packet", "3"], "--packet: 2x(PMM) has no merge card, and so one node"),
+    (["--queue", "3", "--cards", "2x(PMC)"], "--queue: 2x(PMC) has no direct merge; leave it out"),
     (["--view", "10"], "'10' is not 2 numbers, AZIMUTH,ELEVATION"),
     (["--view", "0,91"], "elevation: 91.0 is not from -90 to 90 degrees"),
     (["--zoom", "nan"], "zoom: nan is not from 0.05 to 30.0"),

@@ -87,7 +87,7 @@ def frames_summary(rendering: FramesRendering) -> str:
                  if simulation.build_seconds else "")),
     ]
     if scans:
-        lines.append(_line("shown", f"{min(scans)} to {max(scans)} scans each; "
+        lines.append(_line("shown", f"{min(scans)} to {max(scans)} scans each but the last; "
                            f"{scans.count(1):,} of {len(scans):,} on one scan, which is the "
                            "least"))
     if shown.comparison.first_difference is not None:

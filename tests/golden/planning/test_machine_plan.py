@@ -379,3 +379,12 @@ def test_one_machine_for_several_lists(cards):
         with pytest.raises(InputError, match=rf"^display list: {name}"):
             for each in lists:
                 fitted(narrower, each)
+
+
+def test_lists_of_one_machine_are_alike():
+    with pytest.raises(InputError, match=r"^display list: none is given; a machine is planned"):
+        plan([], cards="PM")
+    other = make_display_list("tetra:depth=0", width=8, height=16).display_list
+    with pytest.raises(InputError, match=r"^width: the display lists differ; one machine has one"):
+        plan([other, make_display_list("tetra:depth=0", width=16, height=16).display_list],
+             cards="PM")

@@ -13,6 +13,8 @@ from cardcage.golden.precision.unquantised import (
 )
 from cardcage.golden.reference import exact
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.scenes.camera import View
+from cardcage.golden.scenes.lighting import Lighting
 
 SIZE = 9
 
@@ -135,11 +137,13 @@ def test_a_display_list_as_it_is(scene, shifts):
 
 
 @pytest.mark.parametrize("scene", ["teapot:tessellation=3", "sphereflake:depth=1"])
+@pytest.mark.parametrize("looking", [{}, {"view": View((200.0, 45.0), 2.5)}, {"cull": True}, {
+    "lighting": Lighting(direction=(0.0, 0.0, 1.0)), "view": View(zoom=0.3), "cull": True}])
 @pytest.mark.parametrize(("sub_bits", "depth_bits"), [(8, 24), (2, 16), (1, 8)])
-def test_quantising_it_makes_the_display_list(scene, sub_bits, depth_bits):
+def test_quantising_it_makes_the_display_list(scene, sub_bits, depth_bits, looking):
     listed = make_display_list(scene, width=48, height=40, sub_bits=sub_bits,
-                               depth_bits=depth_bits, shading="flat").display_list
-    again = unquantised_scene(scene, listed, "flat").display_list(sub_bits, depth_bits)
+                               depth_bits=depth_bits, shading="flat", **looking).display_list
+    again = unquantised_scene(scene, listed, "flat", **looking).display_list(sub_bits, depth_bits)
     for field in ("position", "depth", "color"):
         assert np.array_equal(getattr(again, field), getattr(listed, field))
 

@@ -49,12 +49,12 @@ def test_spelled_out(text, cards):
     ("2x(2000x(PM))", "cards"),
     ("2x2xM", "two counts"),
     ("2x", "match"),
-    ("2(PM)", "match"),
+    ("2(PM)", "a number without an x"),
     ("(PM", "match"),
     ("PM)", "match"),
     (")PM(", "match"),
-    ("x(PM)", "match"),
-    ("2P", "match"),
+    ("x(PM)", "an x without a number"),
+    ("2P", "a number without an x"),
 ])
 def test_what_cannot_be_read(text, message):
     with pytest.raises(InputError, match=message) as raised:
@@ -156,6 +156,18 @@ def test_nodes_that_are_no_machines(cards, message):
 def test_what_is_no_machine(cards, message):
     with pytest.raises(InputError, match=message):
         check_cards(cards)
+
+
+@pytest.mark.parametrize(("text", "message"), [
+    ("4x(PMMX)", "an x without a number before it; it counts, as in 4x(PMM)"),
+    ("x(PM)", "an x without a number before it; it counts, as in 4x(PMM)"),
+    ("4PMM", "a number without an x after it; write a count as in 4x(PMM)"),
+    ("PM4", "a number without an x after it; write a count as in 4x(PMM)"),
+])
+def test_counts_that_are_not_written_as_such(text, message):
+    with pytest.raises(InputError) as raised:
+        parse_cards(text)
+    assert str(raised.value) == f"cards: {text!r}: {message}"
 
 
 @pytest.mark.parametrize(("cards", "expected"), [

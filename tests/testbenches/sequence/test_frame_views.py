@@ -56,7 +56,7 @@ def test_a_path(tmp_path):
     path = tmp_path / "views.csv"
     path.write_text("Azimuth, elevation ,zoom\n10,20,1.5\n\n-30.5,-90,1\n")
     assert read_path(path) == [View((10.0, 20.0), 1.5), View((-30.5, -90.0), 1.0)]
-    path.write_text("azimuth,elevation\n1,2\n")
+    path.write_text("azimuth,elevation\n1,2\n", encoding="utf-8-sig")  # as spreadsheets write it
     assert read_path(path) == [View((1.0, 2.0))]
     assert len(frames_of("tetra:depth=0", path=path)) == 1
 
@@ -84,6 +84,8 @@ def test_what_is_no_path(tmp_path, text, message):
 
 @pytest.mark.parametrize(("scene", "options", "asked", "message"), [
     ("tetra", SMALL, {"frames": 0}, "--frames: must be 1 to 10,000, not 0"),
+    ("tetra", SMALL, {"frames": 3, "turn": float("inf")}, "--turn: inf degrees over 3 pictures"),
+    ("tetra", SMALL, {"frames": 3, "turn": 1e308}, "--turn: 1e+308 degrees over 3 pictures are"),
     ("random:n=3", SMALL, {"frames": 2, "turn": 1.0}, "--turn: random:n=3 is no mesh and cannot"),
     ("hard:sliver-fan", SMALL, {"frames": 2, "turn": 1.0}, "--turn: hard:sliver-fan is no mesh"),
     ("tetra", MachineOptions(zoom=2.0), {"path": "views.csv"}, "--path: says from where each"),

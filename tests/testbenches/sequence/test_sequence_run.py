@@ -69,6 +69,19 @@ def test_each_in_its_turn(cards, fields, options):
     assert drawn[2] == 0 < drawn[0] < drawn[1]
 
 
+@pytest.mark.parametrize("stall_seed", [None, 5])
+def test_a_bus_merges_while_the_next_picture_is_drawn(stall_seed):
+    """Nothing is asked in between, and every picture is on the pins in its turn all the same."""
+    configuration = machine_for("2x(PMS)FF", memory_ports=2)
+    frames = frames_of(configuration, counters="last", stall_seed=stall_seed)
+    assert all(frame.equal for frame in frames)
+    assert [bool(frame.simulation.work) for frame in frames] == [False, False, False, True]
+    for one, other in pairwise(frames):
+        assert one.first_scan + one.scans == other.first_scan
+    asked = frames_of(configuration, stall_seed=stall_seed)
+    assert frames[-1].first_scan < asked[-1].first_scan
+
+
 class Lists(Sequence):
     """Lists of which one is another when it is asked for again."""
 

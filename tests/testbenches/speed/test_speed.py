@@ -204,6 +204,7 @@ def test_set_up_in_hardware_has_its_own_bound(tmp_path):
     (["sliver"], "there is no 'sliver'; take sliver_"),
     (["one_pixel", "--against", "nowhere.json"], "no such file; write one with --json"),
     (["one_pixel", "--against", __file__], "not a file that cardcage bench --json wrote"),
+    (["one_pixel", "--against", "b.json", "--engine", "model"], "only what is simulated is comp"),
     (["one_pixel", "--elements", "3"], "power of two"),
     (["one_pixel", "--elements", "x"], "not a valid integer"),
     (["mesh", "one_pixel", "--view", "0,0", "--engine", "model"],
