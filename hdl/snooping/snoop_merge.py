@@ -14,8 +14,8 @@ __all__ = ["SnoopMerge"]
 
 
 class SnoopMerge(MergeCard):
-    """Listens until as many nodes have ended as have lower numbers than its own, then sends what is
-    left of what its node has drawn; what comes after is of nodes that listened to it.
+    """Listens until all nodes with lower numbers have ended, then sends what is left of what its
+    node has drawn; what comes after is of nodes that listened to it.
 
     While it listens its node's memory units delete words for which they hear one that is as near or
     nearer.  It begins to send when these deletions have been made.
