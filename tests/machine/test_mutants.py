@@ -29,7 +29,7 @@ MUTANTS_IN_RANDOM_LISTS = {
         "self._after_base >= self._triangle.bottom",
         "self._after_base + 1 >= self._triangle.bottom"),
     "row step added twice": (
-        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
+        "rasteriser.interpolator", "Interpolator", ["processing_element.drawing_element"],
         "delayed(m, x + y, 1,", "delayed(m, x + y + y, 1,"),
     "survey takes silence for an answer": (
         "processing_element.survey", "Survey", ["processing_element.processing_element"],
@@ -38,7 +38,7 @@ MUTANTS_IN_RANDOM_LISTS = {
         "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
         "self.broadcast.done & (self._settle == 0)", "self._settle == 0"),
     "columns step one pixel instead of the lattice's stride": (
-        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.drawing_element"],
         "span.x + span.stride", "span.x + 1"),
 }
 
@@ -74,29 +74,29 @@ MUTANTS_ON_PIXELS_HIT_TWICE = {
         "memory_unit.memory_unit", "MemoryUnit", ["machine"],
         "read_here & access.read_busy)", "read_here & access.write)"),
     "front and back colours exchanged": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.scan_part", "ScanPart", ["memory_unit.memory_unit"],
         "Mux(pictures.front, pictures_read[1].value, pictures_read[0].value)",
         "Mux(pictures.front, pictures_read[0].value, pictures_read[1].value)"),
     "pictures are never swapped": (
-        "controller.central_broadcast_controller", "CentralBroadcastController", ["machine"],
+        "controller.one_node", "OneNode", ["controller.merge_control"],
         "front.eq(~pictures.front)", "front.eq(pictures.front)"),
 }
 
 MUTANTS_ON_SPANS_DRAWN_TWICE = {
     "depth of the span's first pixel all along": (
-        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.processing_element"],
+        "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.drawing_element"],
         "pixel.x_steps.eq(span.x - span.left)", "pixel.x_steps.eq(span.end - 1 - span.left)"),
     "odd limbs left out": (
-        "rasteriser.interpolator", "Interpolator", ["processing_element.processing_element"],
+        "rasteriser.interpolator", "Interpolator", ["processing_element.drawing_element"],
         "sum(words[1:], words[0])", "words[0]"),
     "output register captured a clock early": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.scan_part", "ScanPart", ["memory_unit.memory_unit"],
         "with m.If(captured):", "with m.If(scan_read):"),
     "memory is not initialised": (
-        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.sweep_part"],
         "Mux(overwritten, 0, left)", "Mux(overwritten | everything, 0, left)"),
     "passes stop half way": (
-        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.sweep_part"],
         "following[-1] if wraps", "following[-2] if wraps"),
     "with two ports the winner a clock ahead is not seen": (
         "depth_test.two_ports", "TwoPortDepthTest", ["processing_element.processing_element"],
@@ -115,7 +115,7 @@ MUTANTS_IN_SCANS = {
         "m.d.sync += has_written.eq(0)", "pass"),
     "one row where there are two": (
         "processing_element.broadcast_queue", "BroadcastQueue",
-        ["processing_element.processing_element"],
+        ["processing_element.drawing_element"],
         "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
     "scan slot ignored: the element has the port": (
         "memory_unit.one_port_memory", "OnePortMemory", ["memory_unit.memory_unit"],
@@ -128,7 +128,7 @@ MUTANTS_IN_SCANS = {
 
 MUTANTS_IN_MANY_FRAMES = {
     "old tags are not swept out": (
-        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.memory_unit"],
+        "memory_unit.tag_sweep", "TagSweep", ["memory_unit.sweep_part"],
         "Mux(overwritten, 0, left)", "Mux(everything, left, 0)"),
     "a tag is given out before a pass ends": (
         "controller.frame_tags", "FrameTags", ["controller.central_broadcast_controller"],
@@ -137,7 +137,7 @@ MUTANTS_IN_MANY_FRAMES = {
 
 MUTANTS_OF_OLD_WORDS = {
     "colours of all frames are shown": (
-        "memory_unit.memory_unit", "MemoryUnit", ["machine"],
+        "memory_unit.scan_part", "ScanPart", ["memory_unit.memory_unit"],
         "drawn.eq(Mux(pictures.front, current[1], current[0]))",
         "drawn.eq(Mux(pictures.front, access.color[1].tag, access.color[0].tag).any())"),
     "a frame starts before all are done": (
@@ -164,7 +164,7 @@ MUTANTS_IN_SQUARES = {
         "mapping.lattice", "first_owned", ["rasteriser.span_clip"],
         "(square + ahead) << square_bits)", "((square + ahead) << square_bits) + 1)"),
     "the scan reads half its groups": (
-        "mapping.interlace", "ScanAddress", ["memory_unit.memory_unit"],
+        "mapping.interlace", "ScanAddress", ["memory_unit.scan_part"],
         "self.x[:group_bits] == 0", "self.x[:group_bits + 1] == 0"),
     "addresses leave out a bit inside the square": (
         "mapping.interlace", "PixelAddress", ["rasteriser.interpolator"],
