@@ -68,28 +68,36 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
     lists = [display_list] if isinstance(display_list, DisplayList) else display_list
     if not lists:
         raise InputError("display list: none is given; a machine is planned for one at least")
-    picture = {name: getattr(lists[0], name) for name in ("width", "height", "depth_bits")}
+    # Lists may be made anew each time they are asked for.
+    formats = [({name: getattr(each, name) for name in ("width", "height", "depth_bits")},
+                each.sub_bits, fewest_sub_bits(each), each.flat) for each in lists]
+    pictures, own, fewest, flat = zip(*formats, strict=True)
+    picture = pictures[0]
     for name, given in picture.items():
         if rest.pop(name, given) != given:
             raise InputError(f"{name}: the display list has {given}; a plan is for the list's own")
-        if any(getattr(each, name) != given for each in lists):
+        if any(each[name] != given for each in pictures):
             raise InputError(f"{name}: the display lists differ; one machine has one, take lists "
                              "that are alike")
-    own_sub_bits = max(each.sub_bits for each in lists)
-    sub_bits = max(map(fewest_sub_bits, lists))
+    own_sub_bits, sub_bits = max(own), max(fewest)
     fixed = {"cards": cards, **picture}
-    rest = {"shading": "flat" if all(each.flat for each in lists) else "gouraud"} | rest
+    rest = {"shading": "flat" if all(flat) else "gouraud"} | rest
     machine = MachineConfiguration(**fixed, sub_bits=sub_bits, fraction_bits=fraction_bits or 0,
                                    **rest)
     shifts = organisation_of(machine).resolution.shifts
-    needs = combined([scene_needs(with_sub_bits(each, sub_bits), **shifts) for each in lists])
+    each_needs, shared = [], []
+    for each in lists:
+        finer = with_sub_bits(each, sub_bits)
+        each_needs.append(scene_needs(finer, **shifts))
+        if machine.merge is not None:
+            shared.append(finer)
+    needs = combined(each_needs)
     if fraction_bits is None:
         fraction_bits = needs.exact_fraction_bits
         if max_error:
             fraction_bits = min(fraction_bits, error_fraction_bits(needs.extent, max_error))
     machine = replace(machine, fraction_bits=fraction_bits)
-    nodes = needs_of_nodes(machine, [with_sub_bits(each, sub_bits) for each in lists],
-                           needs.exact_fraction_bits, retain)
+    nodes = needs_of_nodes(machine, shared, needs.exact_fraction_bits, retain)
     asked = {name: value for name, value in rest.items() if name != "shading"}
     planned = replace(machine, **_fewest(needs, machine) | asked
                       | fields_of_nodes(nodes, retain, rest))
