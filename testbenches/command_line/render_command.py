@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import click
 
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, ENGINES
-from ..render import DEFAULT_SCENE, RenderOptions, prepare_render
+from ..render import DEFAULT_SCENE, prepare_render
 from ..render_frames import FramesOptions, check_alone, prepare_frames
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 from ..support.progress import busy, progress_bar
@@ -67,8 +66,7 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
         _render_frames(scene, asked, waveform, out, command_line)
         return
     check_alone(asked)
-    one = {field.name: getattr(asked, field.name) for field in fields(RenderOptions)}
-    job = prepare_render(scene, RenderOptions(**one), command_line)
+    job = prepare_render(scene, asked, command_line)
     for warning in job.warnings:
         warn(warning)
     expected = job.expected_cycles()
