@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import click
@@ -21,6 +22,7 @@ from ...golden.specification.configuration import (
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
 from ..machine_options import DEFAULT_PACKET, SETUPS
+from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 
 
 class Size(click.ParamType):
@@ -154,6 +156,17 @@ _FURTHER_OPTIONS = (
                  "of each kind or a pipeline of them.  [default: host]"),
 )
 
+#: Several pictures.
+_SEQUENCE_OPTIONS = (
+    click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
+                 help="Draw N pictures one after another, of a mesh that turns."),
+    click.option("--turn", type=float, metavar="DEGREES",
+                 help=f"With --frames: from one picture to the next.  [default: {DEFAULT_TURN}]"),
+    click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
+                 help="Draw a picture for each line, which has azimuth,elevation or "
+                 "azimuth,elevation,zoom; the first line names them."),
+)
+
 #: How a mesh is looked at.
 _VIEW_OPTIONS = (
     click.option("--view", type=Numbers("AZIMUTH,ELEVATION"), metavar="AZIMUTH,ELEVATION",
@@ -219,6 +232,11 @@ def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..
 def view_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that say how a mesh is looked at."""
     return _with(command, _VIEW_OPTIONS)
+
+
+def sequence_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that ask for several pictures."""
+    return _with(command, _SEQUENCE_OPTIONS)
 
 
 def _with(command: Callable[..., Any], options: tuple[Callable[..., Any], ...]

@@ -20,10 +20,9 @@ from ..comparison.comparison_facts import comparison_facts
 from ..comparison.comparison_table import comparison_table, comparison_text
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE
-from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT, warn
-from .command_options import Several, machine_options_of_cages
+from .command_options import Several, machine_options_of_cages, sequence_options
 
 
 @click.command(name="compare")
@@ -32,13 +31,7 @@ from .command_options import Several, machine_options_of_cages
 @click.option("--nodes", type=Several(click.IntRange(1, MAXIMUM_NODES), "N,…"),
               help="Also each kind of cage with so many nodes: speed-up of the scene, and of one "
               "that grows with the machine.")
-@click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
-              help="Draw N views of a mesh that turns, and tell how far the figures spread.")
-@click.option("--turn", type=float, metavar="DEGREES",
-              help=f"With --frames: from one view to the next.  [default: {DEFAULT_TURN}]")
-@click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
-              help="A view for each line, which has azimuth,elevation or azimuth,elevation,zoom; "
-              "the first line names them.")
+@sequence_options
 @click.option("--simulate", type=click.IntRange(0, MAXIMUM_NODES), default=DEFAULT_SIMULATE,
               show_default=True, metavar="N", help="With --nodes: simulate cages of up to N nodes; "
               "of all of them the cycle model is asked.")

@@ -11,10 +11,9 @@ from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE, prepare_render
 from ..render_frames import FramesOptions, check_alone, prepare_frames
-from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 from ..support.progress import busy, progress_bar
 from .command_group import EXIT_DIFFERENT, warn
-from .command_options import machine_options
+from .command_options import machine_options, sequence_options
 from .tables.render_summary import frames_summary, render_summary
 
 #: Some minutes of simulation: say so before.
@@ -30,13 +29,7 @@ PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
               help="Start with random words in every memory, as after power-on.")
 @click.option("--waveform", type=click.Path(path_type=Path), metavar="FILE.vcd",
               help="Also record every signal.")
-@click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
-              help="Draw N pictures one after another, of a mesh that turns.")
-@click.option("--turn", type=float, metavar="DEGREES",
-              help=f"With --frames: from one picture to the next.  [default: {DEFAULT_TURN}]")
-@click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
-              help="Draw a picture for each line, which has azimuth,elevation or "
-              "azimuth,elevation,zoom; the first line names them.")
+@sequence_options
 @click.option("--depth", type=click.Choice(["last", "all"]), default="last", show_default=True,
               help="With --frames or --path: whose depths are read back as well.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
