@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 from ...golden.scenes.camera import View
@@ -69,14 +68,3 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
                    for element in work],
         "sent": list(simulation.sent),
     }
-
-
-def utilisation(frame: SequenceFrame) -> float:
-    """Fragments of all processing elements over as many times the busiest one's."""
-    counts = [element.fragments for element in frame.simulation.work]
-    return sum(counts) / (len(counts) * max(counts)) if any(counts) else 1.0
-
-
-def shown_in_turn(frames: Sequence[SequenceFrame]) -> bool:
-    """Every picture has its scans before the next one's."""
-    return all(one.first_scan + one.scans == other.first_scan for one, other in pairwise(frames))
