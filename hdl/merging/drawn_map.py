@@ -14,6 +14,16 @@ __all__ = ["WORD_BITS", "DrawnMap"]
 WORD_BITS = 64
 
 
+def map_sizes(*, words: int, word_bits: int) -> tuple[int, int]:
+    """Words of a map of so many words of memory, and of its summary.  Raises ``ValueError`` for a
+    number out of range."""
+    if not 1 <= words <= MAXIMUM_WORDS:
+        raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
+    check_sizes(words=words, word_bits=word_bits)
+    map_words = -(-words // word_bits)
+    return map_words, -(-map_words // word_bits)
+
+
 class DrawnMap(wiring.Component):
     """A bit for each word of a memory, and a summary: a bit for each word of the map that has any.
 
@@ -66,13 +76,9 @@ class DrawnMap(wiring.Component):
     settling = 4
 
     def __init__(self, *, words: int, word_bits: int = WORD_BITS):
-        if not 1 <= words <= MAXIMUM_WORDS:
-            raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
-        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
-        self.map_words = -(-words // word_bits)
-        self.summary_words = -(-self.map_words // word_bits)
+        self.map_words, self.summary_words = map_sizes(words=words, word_bits=word_bits)
         self._map = BitMemory(words=self.map_words, word_bits=word_bits)
         self._summary = BitMemory(words=self.summary_words, word_bits=word_bits)
         address = range(max(2, words))

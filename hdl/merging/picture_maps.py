@@ -4,9 +4,8 @@ from amaranth.hdl import *
 from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MAXIMUM_WORDS
-from .bit_memory import BitMemory, check_sizes, word_layout
-from .drawn_map import WORD_BITS, DrawnMap, Listing, add_changes, unsettled
+from .bit_memory import BitMemory, word_layout
+from .drawn_map import WORD_BITS, DrawnMap, Listing, add_changes, map_sizes, unsettled
 
 __all__ = ["PictureMaps"]
 
@@ -39,13 +38,9 @@ class PictureMaps(wiring.Component):
     settling = DrawnMap.settling
 
     def __init__(self, *, words: int, word_bits: int = WORD_BITS):
-        if not 1 <= words <= MAXIMUM_WORDS:
-            raise ValueError(f"words must be 1 to {MAXIMUM_WORDS}, not {words!r}")
-        check_sizes(words=words, word_bits=word_bits)
         self.words = words
         self.word_bits = word_bits
-        self.map_words = -(-words // word_bits)
-        self.summary_words = -(-self.map_words // word_bits)
+        self.map_words, self.summary_words = map_sizes(words=words, word_bits=word_bits)
         self._maps, self._summaries = ([BitMemory(words=size, word_bits=word_bits)
                                         for _ in range(2)]
                                        for size in (self.map_words, self.summary_words))
