@@ -9,15 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from ..golden.cycles.frame_clocks import predict_frame
-from ..golden.merging.cage import merge_cage
-from ..golden.organisations.organisation_of import organisation_of
 from ..golden.scene_display_list import SceneDisplayList
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
 from .engines.choose_engine import AUTO
 from .engines.engine import Progress
 from .frames.compare import compare
-from .frames.node_counts import count_differences, node_figures, unit_differences
+from .frames.node_counts import (
+    count_differences,
+    golden_traffic,
+    node_figures,
+    unit_differences,
+)
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
 from .frames.setup_timing import setup_timing
@@ -99,30 +102,26 @@ class RenderJob:
                               progress=progress)
 
     def _judged(self, simulation: Simulation) -> Rendering:
-        comparison = compare(self.configuration, self.scene.display_list, simulation)
+        configuration, display_list = self.configuration, self.scene.display_list
+        comparison = compare(configuration, display_list, simulation)
+        traffic = golden_traffic(configuration, display_list, simulation)
         warnings = [*self.warnings, *simulation.notes]
         if simulation.owned < simulation.total:
             warnings.append(f"{simulation.total - simulation.owned} of {simulation.total} memory "
                             "units belong to no processing element; their pixels are not compared")
-        warnings += self._wrong_counts(simulation)
+        if traffic is not None:  # no fault of the picture
+            nodes = node_figures(configuration, display_list, simulation, traffic)
+            warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
         return Rendering(
             scene=self.scene,
-            configuration=self.configuration,
+            configuration=configuration,
             simulation=simulation,
             comparison=comparison,
             command_line=self.command_line,
             warnings=tuple(warnings),
             wall_seconds=time.perf_counter() - self.began,
+            traffic=traffic,
         )
-
-    def _wrong_counts(self, simulation: Simulation) -> list[str]:
-        """What nodes count otherwise than the golden model: no fault of the picture."""
-        if not organisation_of(self.configuration).merges:
-            return []
-        display_list = self.scene.display_list
-        golden = merge_cage(self.configuration, display_list)[1]
-        nodes = node_figures(self.configuration, display_list, simulation, golden)
-        return [*count_differences(nodes), *unit_differences(simulation, golden)]
 
 
 def prepare_render(scene: str | Path = DEFAULT_SCENE, options: RenderOptions | None = None,

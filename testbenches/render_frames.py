@@ -12,6 +12,7 @@ from ..golden.planning.machine_plan import plan
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
 from .engines.engine import Progress
+from .frames.node_counts import golden_traffic
 from .frames.rendering import Rendering
 from .frames.setup_timing import setup_timing
 from .machine_options import resolution_warnings
@@ -105,7 +106,9 @@ class FramesJob:
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,
             warnings=(*self.warnings, *shown.simulation.notes),
-            wall_seconds=time.perf_counter() - self.began, report=report), report)
+            wall_seconds=time.perf_counter() - self.began, report=report,
+            traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation)),
+            report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...golden.cycles.node_work import share_of_node
+from ...golden.merging.cage import merge_cage
 from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
 from ...golden.organisations.organisation_of import organisation_of
@@ -26,6 +27,15 @@ class NodeFigures:
     golden_fragments: int
     sent: int
     golden_sent: int
+
+
+def golden_traffic(configuration: MachineConfiguration, display_list: DisplayList,
+                   simulation: Simulation) -> Traffic | None:
+    """What is sent to merge the picture; None where there is one node, or the counters that tell
+    of it were not read."""
+    if not organisation_of(configuration).merges or not simulation.work:
+        return None
+    return merge_cage(configuration, display_list)[1]
 
 
 def node_figures(configuration: MachineConfiguration, display_list: DisplayList,

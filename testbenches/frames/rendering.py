@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...golden.merging.traffic import Traffic
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.configuration import MachineConfiguration
 from .compare import Comparison
@@ -19,6 +20,8 @@ class Rendering:
     ``warnings``      one line each
     ``wall_seconds``  from the scene's name to the verdict
     ``report``        where ``report.html`` is, if it was written
+    ``traffic``       what is sent to merge its picture, by the golden model; None where there is
+                      one node, or nodes were not asked for their counts
     """
 
     scene: SceneDisplayList
@@ -29,6 +32,7 @@ class Rendering:
     warnings: tuple[str, ...]
     wall_seconds: float
     report: Path | None = None
+    traffic: Traffic | None = None
 
     @property
     def fragments(self) -> int:

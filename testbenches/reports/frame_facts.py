@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...golden.merging.cage import merge_cage
 from ...golden.merging.direct import DirectTraffic
 from ...golden.organisations.machine_facts import machine_facts
-from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
@@ -81,15 +79,14 @@ def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:
 
 def merging_facts(rendering: Rendering) -> dict[str, Any] | None:
     """What the nodes sent to merge their pictures, by the machine's counters and by the golden
-    model; None where there is one node.
+    model; None where there is one node, or its counters were not read.
 
     A chain's last card sends to the pins, which is no link.  Processing elements without pixels
     send every fragment, which memory units take.
     """
-    configuration, simulation = rendering.configuration, rendering.simulation
-    if not organisation_of(configuration).merges:
+    simulation, traffic = rendering.simulation, rendering.traffic
+    if traffic is None:
         return None
-    _, traffic = merge_cage(configuration, rendering.scene.display_list)
     golden = traffic.sent
     links = {send.sender for send in traffic.sends}
     counted = [pixels if node in links else 0 for node, pixels in enumerate(simulation.sent)]
