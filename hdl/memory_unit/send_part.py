@@ -49,8 +49,6 @@ class SendPart:
             m.d.comb += [access.read.eq(1), access.read_address.eq(sender.reads.payload)]
             if self.configuration.memory_ports == 2:
                 m.d.comb += [access.scan.eq(1), access.scan_address.eq(sender.reads.payload)]
-        selected = lines.unit == unit.left.id
-        sends = selected & sender.pixels.valid
         m.d.comb += [
             sender.write.eq(access.write & ~access.write_busy),
             sender.write_address.eq(access.write_address),
@@ -60,9 +58,5 @@ class SendPart:
             sender.color.eq(Mux(pictures.front, access.color[0].value, access.color[1].value)),
 
             lines.settled.eq(sender.settled),
-            sender.start.eq(lines.start),
-            lines.valid.eq(sends),
-            Value.cast(lines.pixel).eq(Mux(sends, Value.cast(sender.pixels.payload), 0)),
-            sender.pixels.ready.eq(selected & lines.ready),
-            lines.more.eq(selected & sender.more),
+            *sender.answers(lines, unit.left.id),
         ]

@@ -82,8 +82,6 @@ class SnoopPart:
             sender.hidden_address.eq(address),
         ]
 
-        selected = lines.unit == number
-        sends = selected & sender.pixels.valid
         m.d.comb += [
             sender.front.eq(front),
             sender.write.eq(access.write & ~access.write_busy),
@@ -93,9 +91,5 @@ class SnoopPart:
             sender.color.eq(pixel.color),
 
             lines.settled.eq(sender.settled & ~compares & ~sender.hidden),
-            sender.start.eq(lines.start),
-            lines.valid.eq(sends),
-            Value.cast(lines.pixel).eq(Mux(sends, Value.cast(sender.pixels.payload), 0)),
-            sender.pixels.ready.eq(selected & lines.ready),
-            lines.more.eq(selected & sender.more),
+            *sender.answers(lines, number),
         ]

@@ -91,6 +91,19 @@ class PictureSender(wiring.Component):
     def words(self) -> int:
         return self.map.words
 
+    def answers(self, lines: wiring.PureInterface, number: Value) -> list:
+        """Assignments to all of ``lines`` (``SendLines``) but ``settled``, of the memory unit of
+        that number, which has this: its pixels, when it is the one that is named."""
+        selected = lines.unit == number
+        sends = selected & self.pixels.valid
+        return [
+            self.start.eq(lines.start),
+            lines.valid.eq(sends),
+            Value.cast(lines.pixel).eq(Mux(sends, Value.cast(self.pixels.payload), 0)),
+            self.pixels.ready.eq(selected & lines.ready),
+            lines.more.eq(selected & self.more),
+        ]
+
     def elaborate(self, platform):
         m = Module()
         m.submodules.map = drawn = self.map
