@@ -103,7 +103,7 @@ ROUND_ROBIN, EQUAL_WORK, NEAREST_WORK = (
 ASSIGNMENTS = (
     *map(packets, PACKETS),
     Assignment("runs of equal boxes", True, lambda listed, nodes: runs(boxes(listed), nodes)),
-    Assignment(EQUAL_WORK, True, lambda listed, nodes: runs(work(listed), nodes)),
+    Assignment(EQUAL_WORK, True, lambda listed, nodes: Shares.of(listed, nodes, "work").node),
     Assignment("nearest first, contiguous", False, _nearest),
     Assignment(NEAREST_WORK, False, _nearest_work),
 )
