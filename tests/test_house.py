@@ -15,8 +15,9 @@ ROOT = Path(__file__).parent.parent
 #: The wings of each folder, from the bottom to the top: each imports only from those before it.
 WINGS = {
     "golden": (
-        "specification", "organisations", "scenes", "reference", "merging", "planning", "cycles",
-        "hard_cases", "scene_argument", "scene_display_list", "precision"),
+        "specification", "organisations", "scenes", "reference", "balancing", "merging",
+        "planning", "cycles", "hard_cases", "scene_argument", "scene_display_list",
+        "precision"),
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all", "controller",

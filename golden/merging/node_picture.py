@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from ..organisations.shares import Shares
 from ..reference.exact import draw
-from ..specification.display_list import DisplayList
+from ..specification.display_list import DisplayList, Shading, shading_for
 from ..specification.picture import NO_PRIMITIVE, Picture
-from ..specification.shading import Shading, shading_for
 
 Int64 = NDArray[np.int64]
 

@@ -8,6 +8,7 @@ entry in ``organisation_of``.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, TypedDict, TypeVar
 
@@ -113,6 +114,12 @@ class Organisation(ABC):
     def fault(self) -> Fault | None:
         """Why the cage is refused: it boots, answers this and draws nothing; of what follows only
         ``domains`` and ``node_units`` can be asked.  None where it draws."""
+
+    def dealt(self, table: Sequence[int] | Int64 | None) -> Organisation:
+        """The same cage, as it is while a picture that was drawn by ``table`` is shown or read
+        back: the processing element of each region, row by row; None where nothing is said of it.
+        Only regions that are dealt out change places."""
+        return self
 
     @property
     @abstractmethod

@@ -6,6 +6,7 @@ from functools import lru_cache
 
 from ..specification.card_order import CHAIN_MERGE, DIRECT_MERGE, SNOOP_MERGE, TREE_MERGE
 from ..specification.configuration import MachineConfiguration
+from .dealt_regions import DealtRegions
 from .direct_elements import DirectElements
 from .host_broadcast import HostBroadcast
 from .nodes import ChainedNodes, TreeOfNodes
@@ -20,5 +21,8 @@ ORGANISATIONS: dict[str | None, type[Organisation]] = {
 
 @lru_cache(maxsize=64)
 def organisation_of(configuration: MachineConfiguration) -> Organisation:
-    """Its merge cards tell; a cage without any is Fuchs and Johnson's."""
+    """Its merge cards tell; a cage without any is Fuchs and Johnson's, or Ellsworth's where regions
+    are dealt out."""
+    if configuration.regions is not None:
+        return DealtRegions(configuration)
     return ORGANISATIONS[configuration.merge](configuration)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..specification.edge_widths import fewest_edge_fraction_bits
+from ..specification.widths import fewest_edge_fraction_bits
 
 
 def on_screen_widths(width: int, height: int, sub_bits: int) -> dict[str, Any]:

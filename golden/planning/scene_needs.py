@@ -19,10 +19,10 @@ from ..organisations.organisation_of import organisation_of
 from ..reference.triangle_setup import Edges, Outlines, outline
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from ..specification.edge_widths import fewest_edge_fraction_bits
 from ..specification.errors import InputError
 from ..specification.fixed_point import error_bound, exact_fraction_bits
 from ..specification.sampling_grid import Grid
+from ..specification.widths import fewest_edge_fraction_bits
 from .node_needs import NodeNeeds
 
 Int64 = NDArray[np.int64]

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from ..planning.scene_needs import scene_needs
 from ..reference import bit_true, exact
 from ..specification import fixed_point
-from ..specification.display_list import DisplayList
+from ..specification.display_list import DisplayList, Shading, shading_for
 from ..specification.picture import Picture
-from ..specification.shading import Shading, shading_for
 from . import float32_depth_buffer, unquantised
 from .unquantised import ScreenTriangles, UnquantisedScene
 

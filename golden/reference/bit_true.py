@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..specification import fixed_point
-from ..specification.display_list import DisplayList
+from ..specification.display_list import DisplayList, Shading, shading_for
 from ..specification.picture import Picture
 from ..specification.ranges import CHANNEL_BITS
-from ..specification.shading import Shading, shading_for
 from .coverage import FRAGMENT_LIMIT, ROW_LIMIT, Triangles, spans
 from .depth_buffer import DepthBuffer
 from .triangle_setup import Planes, PreparedTriangles, prepare

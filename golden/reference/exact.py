@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..specification.display_list import DisplayList
+from ..specification.display_list import DisplayList, Shading, shading_for
 from ..specification.errors import InputError
 from ..specification.picture import Picture
 from ..specification.sampling_grid import Grid
-from ..specification.shading import Shading, shading_for
 from .coverage import FRAGMENT_LIMIT, ROW_LIMIT, Spans, Triangles, spans
 from .depth_buffer import DepthBuffer
 

@@ -5,7 +5,7 @@ start and two increments, rounded half up at ``2**-fraction_bits`` and kept modu
 power of two.  An edge is known as a quotient and a remainder; a machine carries it in
 fixed point, with as many fraction bits as make every column exact (``carry_edges``).
 
-Widths at which every triangle fits (``edge_widths``, and below), b the display list's coordinate
+Widths at which every triangle fits (``widths``, and below), b the display list's coordinate
 bits, s its sub-pixel bits:
 
     edge column      ``edge_column_bits``      b - s + 1, signed
@@ -28,10 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..specification import fixed_point
-from ..specification.display_list import DisplayList
+from ..specification.display_list import DisplayList, Shading, shading_for
 from ..specification.ranges import CHANNEL_BITS
 from ..specification.sampling_grid import Grid
-from ..specification.shading import Shading, shading_for
 
 Int64 = NDArray[np.int64]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from itertools import accumulate
 
 from .errors import InputError
@@ -156,16 +157,21 @@ def _check_direct(cards: str) -> None:
                          "in PPPPDMMMM")
 
 
-def check_cards(cards: str) -> None:
+def check_cards(cards: str, *, dealt: bool = False) -> None:
     """Raise ``InputError`` unless in every node each memory unit has a processing element to its
     left, and all nodes have one number of units; this and the number of frame units are powers of
-    two."""
+    two.  ``dealt``: regions are dealt out to processing elements, so that these have powers of two
+    of units, and there may be any number of them."""
     if DIRECT_MERGE in cards:
         _check_power_of_two(cards.count(MEMORY_UNIT), CARD_NAMES[MEMORY_UNIT])
         return
     nodes = node_cards(cards)
     for number, node in enumerate(nodes):
         _check_node(node, repr(node) if node == cards else f"node {number}, {node!r},")
+        if dealt:
+            check_equal_shares(units for _, units in domains(node))
+        else:
+            _check_power_of_two(node.count(MEMORY_UNIT), CARD_NAMES[MEMORY_UNIT])
     units = sorted({node.count(MEMORY_UNIT) for node in nodes})
     if len(units) > 1:
         raise InputError(f"cards: nodes of {' and '.join(map(str, units))} memory units in one "
@@ -184,7 +190,16 @@ def _check_node(cards: str, called: str) -> None:
         left = len(cards) - len(cards.lstrip(MEMORY_UNIT))
         raise InputError(f"cards: {called} has {left} memory unit(s) left of the first processing "
                          "element, which belong to nobody; start with a P")
-    _check_power_of_two(cards.count(MEMORY_UNIT), CARD_NAMES[MEMORY_UNIT])
+
+
+def check_equal_shares(shares: Iterable[int]) -> None:
+    """Raise ``InputError`` unless all processing elements have one number of memory units, a power
+    of two."""
+    sizes = sorted(set(shares))
+    if len(sizes) > 1 or sizes[0] & (sizes[0] - 1) or not sizes[0]:
+        raise InputError("cards: where regions are dealt out all processing elements have as many "
+                         f"memory units, a power of two, not {' and '.join(map(str, sizes))}; take "
+                         "a cage such as 3x(PMM)")
 
 
 def _check_power_of_two(units: int, called: str) -> None:

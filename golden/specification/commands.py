@@ -40,6 +40,10 @@ class Opcode(IntEnum):
     LOAD = 7  # what TRIANGLE or PREPARED_TRIANGLE has, for the list of its node
     DRAW_LISTS = 8  # each node draws all that is in its list
     CLEAR_LISTS = 9  # all lists are empty
+    # Only where regions of the screen are dealt out:
+    REGION = 10  # give the next region, row by row, to a processing element; not inside a frame
+    READ_REGIONS = 11  # send what was counted of each slot of every processing element
+    READ_TABLE = 12  # send the table that the machine has made for the next picture
 
 
 class ResponseKind(IntEnum):
@@ -63,6 +67,8 @@ class ResponseKind(IntEnum):
     FRAME_UNITS = 15  # at boot, where nodes send to frame units: how many there are
     TAKEN = 16  # per memory unit behind a direct merge: fragments it took since the frame start
     FOLLOWED = 17  # times that a depth on its way to the memory took the place of one read there
+    REGION_COUNT = 18  # per processing element and slot: its count since the frame start
+    TABLE_ENTRY = 19  # per region, row by row: its processing element in the next picture
 
 
 class Fault(IntEnum):
@@ -73,6 +79,11 @@ class Fault(IntEnum):
     # shares that must be equal are not, or frame units do not hold the picture: nothing is drawn
     NODES_DIFFER = 3  # nodes have different numbers of memory units: nothing is drawn
     LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
+    REGION_TO_NOBODY = 5  # no such processing element, or a region was left out: the table that
+    # was there before stays, as with the next three
+    REGION_TWICE = 6  # a region that the table has already
+    NO_SLOT = 7  # more regions than the processing element has room for
+    TABLE_LATE = 8  # a region after the frame start
 
 
 def fault_text(value: int) -> str:
@@ -106,6 +117,8 @@ RESPONSE_FIELDS: dict[ResponseKind, Layout] = {
     ResponseKind.FRAME_UNITS: {"units": RESPONSE_VALUE_BITS},
     ResponseKind.TAKEN: {"fragments": RESPONSE_VALUE_BITS},
     ResponseKind.FOLLOWED: {"fragments": RESPONSE_VALUE_BITS},
+    ResponseKind.REGION_COUNT: {"count": RESPONSE_VALUE_BITS},
+    ResponseKind.TABLE_ENTRY: {"element": RESPONSE_VALUE_BITS},
 }
 
 
@@ -172,6 +185,14 @@ def triangle_layout(configuration: MachineConfiguration) -> Layout:
 def frame_start_layout() -> Layout:
     """The body of ``FRAME_START``: the background colour."""
     return dict.fromkeys(CHANNELS, CHANNEL_BITS)
+
+
+def region_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``REGION``: which region, and the number of its processing element, for which
+    there are bits enough to name one that is not there."""
+    regions = configuration.dealt_regions
+    return {"column": regions.columns.bit_length(), "row": regions.rows.bit_length(),
+            "element": configuration.element_bits}
 
 
 def layout_bits(layout: Layout) -> int:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
-from .card_order import MAXIMUM_NODES, Cage, check_cards, check_merging, parse_cards
-from .display_list import coordinate_bits
-from .edge_widths import edge_column_bits, edge_fraction_bits, edge_height_bits
+from .card_order import MAXIMUM_NODES, check_cards, check_merging, parse_cards
+from .display_list import Shading, coordinate_bits
 from .errors import InputError
-from .fixed_point import (
-    MAX_FRACTION_BITS,
-    guard_bits,
-    on_screen_fraction_bits,
-    stays_in_range,
-)
+from .fixed_point import MAX_FRACTION_BITS, on_screen_fraction_bits
 from .interlace import (
     MAXIMUM_BLOCK,
     Interlace,
@@ -23,9 +18,17 @@ from .interlace import (
     check_squares,
     interlace_for,
 )
-from .ranges import CHANNEL_BITS, FORMAT_RANGES, MAXIMUM_SIZE, check_whole
-from .shading import Shading
+from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
+from .regions import (
+    Balance,
+    Balancer,
+    RegionedPicture,
+    Regions,
+    default_slots,
+    regions_of,
+)
 from .video_timing import VideoTiming, video_timing
+from .widths import Widths, edge_column_bits, edge_fraction_bits, edge_height_bits
 
 MAXIMUM_WORDS = 1 << 20  # of one memory unit
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
@@ -63,7 +66,7 @@ RANGES = {
 
 
 @dataclass(frozen=True)
-class MachineConfiguration(Cage):
+class MachineConfiguration(Widths):
     """What the cards are built for.
 
     ``cards``             card order, left to right, spelled out or as ``4x(PMM)``
@@ -104,6 +107,15 @@ class MachineConfiguration(Cage):
     ``maximum_nodes``  the largest number the node lines carry; 0 means what ``cards`` holds
     ``queue``          where nodes merge directly: fragments that can wait from each processing
                        element to each memory unit, or ``"element"``: one queue for all of them
+
+    Where regions of the screen are dealt out to the processing elements of one node:
+
+    ``regions``   columns and rows of them (``Regions``); None interlaces pixels instead
+    ``slots``     regions that each processing element has room for; 0 means a quarter more than an
+                  even share
+    ``balance``   what a processing element counts of each of its regions, for the next picture's
+                  table: ``"triangles"``, ``"clocks"``, or with ``"static"`` nothing
+    ``balancer``  who makes that table of the counts: ``"host"``, or the controller, ``"hardware"``
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -155,6 +167,10 @@ class MachineConfiguration(Cage):
     list_words: int = 0
     maximum_nodes: int = 0
     queue: Queue = 4
+    regions: tuple[int, int] | None = None
+    slots: int = 0
+    balance: Balance = "clocks"
+    balancer: Balancer = "host"
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -187,12 +203,16 @@ class MachineConfiguration(Cage):
         check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
         if not self.allow_orphans:
-            check_cards(self.cards)
+            check_cards(self.cards, dealt=self.regions is not None)
         self._check_nodes()
         check_squares(self.block, self.shares_of_units, skew=self.skew,
                       orphans=self.allow_orphans)
         if self.merges_directly:
             check_diagonal(self.block, skew=self.skew)
+        if self.regions is not None:
+            fix("slots", self._check_regions())
+            fix("words", self.slots << self.slot_bits)
+        self._check_dealing()
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
                              square_bits=self.square_bits, share_bits=self.share_bits,
@@ -242,6 +262,48 @@ class MachineConfiguration(Cage):
                              "or 0 where no two nodes tie")
         self._check_queue()
 
+    def _check_dealing(self) -> None:
+        """What only machines have that deal regions out, and of these not all."""
+        for name, known in (("balance", get_args(Balance)), ("balancer", get_args(Balancer))):
+            if getattr(self, name) not in known:
+                raise InputError(f"{name}: {getattr(self, name)!r} is none of {', '.join(known)}")
+        if self.regions is None:
+            for name, default in (("slots", 0), ("balance", "clocks"), ("balancer", "host")):
+                if getattr(self, name) != default:
+                    raise InputError(f"{name}: is for machines that deal regions out; give regions "
+                                     "as well, or leave it out")
+        elif (self.balance, self.balancer) == ("static", "hardware"):
+            raise InputError("balancer: the hardware packs by what is counted, and static counts "
+                             "nothing; take balance triangles or clocks")
+
+    def _check_regions(self) -> int:
+        """The slots of each processing element.  Raises ``InputError`` where regions cannot be
+        dealt out."""
+        assert self.regions is not None
+        for name, number in zip(("columns", "rows"), self.regions, strict=True):
+            check_whole(f"regions: {name}", number, 1, MAXIMUM_SIZE)
+        regions, elements = self.dealt_regions, self.processing_elements
+        if self.merge is not None:
+            raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
+                             "cage of one node, such as 4x(PMM)")
+        for name, default in (("words", 0), ("block", 1), ("skew", False)):
+            if getattr(self, name) != default:
+                raise InputError(f"{name}: is settled by the regions; leave it out")
+        inside = self.interlace
+        if max(inside.unit_mask("x") >> regions.x_bits, inside.unit_mask("y") >> regions.y_bits):
+            raise InputError(f"regions: {1 << regions.x_bits}x{1 << regions.y_bits} pixels do not "
+                             f"spread over {inside.units} memory units; take larger ones")
+        slots = self.slots or default_slots(regions.count, elements)
+        check_whole("slots", slots, 1, regions.count)
+        if slots * elements < regions.count:
+            raise InputError(f"slots: {slots} in each of {elements} processing elements do not "
+                             f"hold {regions.count} regions; take {regions.even_share(elements)} "
+                             "at least")
+        if slots << self.slot_bits > MAXIMUM_WORDS:
+            raise InputError(f"slots: {slots} need {slots << self.slot_bits} words in each memory "
+                             f"unit, at most {MAXIMUM_WORDS}; take fewer, or add memory units")
+        return slots
+
     def _check_queue(self) -> None:
         if self.queue == "element":
             return
@@ -267,14 +329,21 @@ class MachineConfiguration(Cage):
         return max(self.maximum_units, self.frame_units).bit_length()
 
     @property
-    def node_bits(self) -> int:
-        """Node lines on the backplane: enough for the total; none where all is one node."""
-        return 0 if self.merge is None else self.maximum_nodes.bit_length()
-
-    @property
     def interlace(self) -> Interlace:
-        """The interlace this cage settles on at boot."""
+        """The interlace this cage settles on at boot; where regions are dealt out, of each region's
+        pixels over its processing element's units."""
+        if self.regions is not None:
+            regions = self.dealt_regions
+            return Interlace(self.share_bits, 1 << regions.x_bits, 1 << regions.y_bits)
         return self._interlace_of(self.units)
+
+    def pictures(self) -> Sequence[Interlace | RegionedPicture]:
+        """What the machine draws, for every number of units with which it draws, fewest first."""
+        if self.regions is None:
+            return self.interlaces()
+        fewest = -(-self.dealt_regions.count // self.slots)
+        return [RegionedPicture(elements << self.share_bits, self.width, self.height)
+                for elements in range(fewest, (self.maximum_units >> self.share_bits) + 1)]
 
     def interlaces(self) -> tuple[Interlace, ...]:
         """One for every number of units the cards must be ready for, fewest first."""
@@ -294,103 +363,34 @@ class MachineConfiguration(Cage):
                        skew=False, packet=1, order_bits=0, list_words=0, maximum_nodes=0,
                        allow_orphans=True)
 
+    @cached_property
+    def dealt_regions(self) -> Regions:
+        """The regions, where there are any."""
+        assert self.regions is not None
+        return regions_of(self.width, self.height, *self.regions)
+
+    @property
+    def slot_bits(self) -> int:
+        """Log2 of the words that a region takes in each unit of its processing element; there a
+        pixel's address is its slot, then its address among these."""
+        regions = self.dealt_regions
+        return regions.x_bits + regions.y_bits - self.share_bits
+
+    @property
+    def element_bits(self) -> int:
+        """Bits of the number of a processing element that regions are dealt to, or of one more
+        than there can be."""
+        return (self.maximum_units >> self.share_bits).bit_length()
+
+    @property
+    def table_bits(self) -> int:
+        """Bits of a slot of a processing element."""
+        return (self.slots - 1).bit_length()
+
     @property
     def aligned_domains(self) -> bool:
         """Every domain that draws is one aligned block of units, a power of two of them."""
         return self.block > 1 or self.maximum_units <= 2 or self.merges_directly
-
-    # Widths: each with its reason
-
-    @property
-    def x_bits(self) -> int:
-        """0 … width, the exclusive end of a span included."""
-        return self.width.bit_length()
-
-    @property
-    def y_bits(self) -> int:
-        return self.height.bit_length()
-
-    @property
-    def address_bits(self) -> int:
-        return max(1, (self.words - 1).bit_length())
-
-    @property
-    def square_bits(self) -> int:
-        """Log2 of the side of the squares that processing elements interlace in."""
-        return self.block.bit_length() - 1
-
-    @property
-    def share_bits(self) -> int:
-        """Log2 of the memory units of each processing element, where they interlace in squares.
-
-        It is that of the cards as built: with boards pulled out so that shares differ, the machine
-        draws nothing.
-        """
-        if self.block == 1:
-            return 0
-        return max(1, *self.shares_of_units).bit_length() - 1
-
-    @property
-    def edges_on_screen(self) -> bool:
-        """No edge's column is off the screen, and none is signed."""
-        return self.edge_column_bits <= self.x_bits
-
-    @property
-    def edge_word_bits(self) -> int:
-        return self.edge_column_bits + self.edge_fraction_bits
-
-    @property
-    def stays_in_range(self) -> bool:
-        """Interpolants err by so little that they are carried unsigned, and never saturate."""
-        return stays_in_range(self.fraction_bits, self.width + self.height - 2)
-
-    @property
-    def depth_plane_bits(self) -> int:
-        """Carried depth; sums wrap, values at covered pixels fit with their error."""
-        return self._plane_bits(self.depth_integer_bits, self.depth_bits)
-
-    @property
-    def rank_bits(self) -> int:
-        """What is kept of a pixel to compare it by: depth, and below it the order.  Within a node
-        an order never decides, since triangles come in ascending order."""
-        return self.depth_bits + self.order_bits
-
-    @property
-    def node_order_bits(self) -> int:
-        """The node's part of an order, its lowest bits: only where fragments of different nodes
-        meet in memory, since merge cards know whose a pixel is."""
-        return (self.maximum_nodes - 1).bit_length() if self.merges_directly else 0
-
-    @property
-    def round_bits(self) -> int:
-        """The round's part of an order."""
-        return max(0, self.order_bits - self.node_order_bits)
-
-    @property
-    def share_of_list_bits(self) -> int:
-        """What a triangle's command says of its node and its round."""
-        return self.node_bits + self.round_bits
-
-    @property
-    def channel_plane_bits(self) -> int:
-        return self._plane_bits(self.channel_integer_bits, CHANNEL_BITS)
-
-    def _plane_bits(self, integer_bits: int, value_bits: int) -> int:
-        if not integer_bits:
-            integer_bits = value_bits
-            if not self.stays_in_range:
-                integer_bits += guard_bits(value_bits, self.fraction_bits,
-                                           self.width + self.height - 2)
-        return integer_bits + self.fraction_bits
-
-    @property
-    def depth_background(self) -> int:
-        return (1 << self.depth_bits) - 1
-
-    @property
-    def rank_background(self) -> int:
-        """The greatest depth and the greatest order."""
-        return (1 << self.rank_bits) - 1
 
     @property
     def cycles_per_scan(self) -> int:

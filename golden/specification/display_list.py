@@ -8,7 +8,7 @@ import zipfile
 import zlib
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,3 +197,19 @@ class DisplayList:
             )
         except InputError as error:
             raise InputError(str(error).replace("display list", str(path), 1)) from None
+
+
+#: "flat" takes the colour of a triangle's first vertex, "gouraud" interpolates.
+Shading = Literal["flat", "gouraud"]
+
+
+def shading_for(display_list: DisplayList, shading: Shading | None = None) -> Shading:
+    """``shading`` itself, or by default the cheapest that draws the list as meant.
+
+    ``InputError`` for any other word.
+    """
+    if shading is None:
+        return "flat" if display_list.flat else "gouraud"
+    if shading not in ("flat", "gouraud"):
+        raise InputError(f"shading: {shading!r} is neither 'flat' nor 'gouraud'")
+    return shading

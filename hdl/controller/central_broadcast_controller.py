@@ -316,7 +316,7 @@ class CentralBroadcastController(wiring.Component):
         """The packet is the offered prepared triangle, without rows past the picture."""
         layout = prepared_triangle_layout(self.configuration)
         offered, draw = data.View(layout, self.body[:layout.size]), self._packet.body.draw
-        heights = {interlace.height for interlace in self.configuration.interlaces()}
+        heights = {picture.height for picture in self.configuration.pictures()}
         m.d.comb += draw.eq(offered)
         if min(heights) == (1 << self.configuration.y_bits) - 1:
             return  # no number of a row's bits lies past the picture
@@ -376,12 +376,12 @@ class CentralBroadcastController(wiring.Component):
     def _picture(self, m):
         """Whether the number of units is one the cards can interlace, and the resolution."""
         with m.Switch(self.total):
-            for interlace in self.configuration.interlaces():
-                with m.Case(interlace.units):
+            for picture in self.configuration.pictures():
+                with m.Case(picture.units):
                     m.d.comb += [self._supported.eq(1),
                                  self._resolution.eq(commands.response_value(
-                                     ResponseKind.PICTURE, width=interlace.width,
-                                     height=interlace.height))]
+                                     ResponseKind.PICTURE, width=picture.width,
+                                     height=picture.height))]
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.

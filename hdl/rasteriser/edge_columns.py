@@ -104,7 +104,7 @@ class EdgeColumns(wiring.Component):
         return column if self.configuration.edges_on_screen else column.as_signed()
 
     def _held(self, column):
-        widths = {interlace.width for interlace in self.configuration.interlaces()}
+        widths = {picture.width for picture in self.configuration.pictures()}
         if self.configuration.edges_on_screen and 1 << len(column) <= min(widths):
             return column
         width = Const(widths.pop()) if len(widths) == 1 else self.width

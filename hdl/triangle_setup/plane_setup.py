@@ -30,7 +30,7 @@ def plane_division(configuration: MachineConfiguration, *, value_bits: int,
                    word_bits: int) -> dict[str, int]:
     """The parameters of an interpolant's ``Divider``."""
     area_bits = 2 * configuration.coordinate_bits
-    shift = max(interlace.y_shift for interlace in configuration.interlaces())
+    shift = max(picture.y_shift for picture in configuration.pictures())
     return {
         # The sum of three products, each below 2**(area and value), doubled; or a slope.
         "dividend_bits": max(area_bits + value_bits + 4, slope_bits(configuration, value_bits) + 1

@@ -15,7 +15,7 @@ def grid_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``width``, ``height``    in pixels
     ``x_shift``, ``y_shift`` log2 of a pixel of it in pixels of the highest resolution
     """
-    grids = configuration.interlaces()
+    grids = configuration.pictures()
     return data.StructLayout({
         "width": configuration.x_bits,
         "height": configuration.y_bits,
@@ -46,8 +46,8 @@ class SamplingGrid(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         with m.Switch(self.total):
-            for interlace in self.configuration.interlaces():
-                with m.Case(interlace.units):
-                    m.d.sync += [self.grid[name].eq(getattr(interlace, name))
+            for picture in self.configuration.pictures():
+                with m.Case(picture.units):
+                    m.d.sync += [self.grid[name].eq(getattr(picture, name))
                                  for name in self.grid.shape().members]
         return m

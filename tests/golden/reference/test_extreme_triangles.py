@@ -20,12 +20,12 @@ from cardcage.golden.reference.triangle_setup import (
 )
 from cardcage.golden.specification import fixed_point
 from cardcage.golden.specification.display_list import DisplayList, coordinate_bits
-from cardcage.golden.specification.edge_widths import (
+from cardcage.golden.specification.sampling_grid import Grid
+from cardcage.golden.specification.widths import (
     edge_column_bits,
     edge_fraction_bits,
     edge_height_bits,
 )
-from cardcage.golden.specification.sampling_grid import Grid
 
 FARTHEST = 2**32 - 2
 

@@ -16,14 +16,14 @@ from cardcage.golden.reference.triangle_setup import (
     scene_fraction_bits,
 )
 from cardcage.golden.specification.display_list import DisplayList, coordinate_bits
-from cardcage.golden.specification.edge_widths import (
+from cardcage.golden.specification.errors import InputError
+from cardcage.golden.specification.fixed_point import to_signed
+from cardcage.golden.specification.widths import (
     edge_column_bits,
     edge_fraction_bits,
     edge_height_bits,
     fewest_edge_fraction_bits,
 )
-from cardcage.golden.specification.errors import InputError
-from cardcage.golden.specification.fixed_point import to_signed
 
 SHIFTS = [(0, 0), (0, 1), (1, 1), (1, 2), (2, 2)]
 

@@ -1,0 +1,1 @@
+"""Which processing element gets which region of the screen, and what it costs."""

@@ -1,0 +1,55 @@
+"""The tables by which regions are dealt out to processing elements.
+
+A table has for each region, row by row, the number of its processing element: int64 (regions,).
+The slots of an element are its regions in ascending order.
+"""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..specification.errors import InputError
+
+Int64 = NDArray[np.int64]
+
+
+def static_table(regions: int, elements: int) -> Int64:
+    """Region modulo elements: what a machine begins with."""
+    return np.arange(regions, dtype=np.int64) % elements
+
+
+def slots_of(table: Int64) -> Int64:
+    """int64 (regions,): how many lower regions its processing element has."""
+    order = np.argsort(table, kind="stable")
+    begins = np.searchsorted(table[order], table[order])
+    slots = np.empty(len(table), np.int64)
+    slots[order] = np.arange(len(table)) - begins
+    return slots
+
+
+def packed_table(counts: Int64, elements: int, slots: int) -> Int64:
+    """The table for the next picture, from what was counted of each region in the last one.
+
+    A region weighs its count and one more.  The heaviest comes first, of equal ones the lowest;
+    each goes to the element that bears least so far, of these to one with fewest regions, of these
+    to the lowest; an element that has ``slots`` regions gets no more.  Without the one more, and
+    the limit, all empty regions would fall to one element.
+
+    Ellsworth 1994, the greedy multiple-bin packing before figure 3.
+    """
+    if elements * slots < len(counts):
+        raise InputError(f"slots: {slots} in each of {elements} processing elements do not hold "
+                         f"{len(counts)} regions")
+    weights = np.asarray(counts, np.int64) + 1
+    table = np.empty(len(weights), np.int64)
+    # Load, regions, number of each element that has room.
+    room = [(0, 0, element) for element in range(elements)]
+    for region in np.argsort(-weights, kind="stable").tolist():
+        load, held, element = heapq.heappop(room)
+        table[region] = element
+        if held + 1 < slots:
+            heapq.heappush(room, (load + int(weights[region]), held + 1, element))
+    return table
