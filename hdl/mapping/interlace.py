@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.interlace import Interlace
 
-__all__ = ["PixelAddress", "ScanAddress", "unit_number"]
+__all__ = ["PixelAddress", "ScanAddress", "unit_number", "without"]
 
 
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
@@ -24,7 +24,7 @@ def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
     return Cat(number)
 
 
-def _without(value: Value, mask: int) -> Value:
+def without(value: Value, mask: int) -> Value:
     """``value`` with the bits of ``mask`` left out, those above moved down."""
     return Cat(value[bit] for bit in range(len(value)) if not mask >> bit & 1)
 
@@ -75,8 +75,8 @@ class PixelAddress(wiring.Component):
                 with m.Case(interlace.units):
                     m.d.comb += [
                         self.unit.eq(unit_number(interlace, self.x, self.y)),
-                        row.eq(_without(self.y, interlace.unit_mask("y"))),
-                        column.eq(_without(self.x, interlace.unit_mask("x"))),
+                        row.eq(without(self.y, interlace.unit_mask("y"))),
+                        column.eq(without(self.x, interlace.unit_mask("x"))),
                         pitch.eq(interlace.pitch),
                         self.last_word.eq(interlace.words - 1),
                         self.width.eq(interlace.width),
