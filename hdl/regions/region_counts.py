@@ -23,6 +23,7 @@ class RegionCounts(wiring.Component):
     Members
     -------
     row: In(visited_row_layout)
+        A row that has been walked, if it is ``valid``.
     clear: In(1)
         Every count is 0 from the next clock on.
     start: In(1)
