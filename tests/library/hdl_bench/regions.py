@@ -187,13 +187,17 @@ class Dealt:
         value, bits = self.values[index], self.regions.y_bits
         return range(max(value["top"], row << bits), min(value["bottom"], row + 1 << bits))
 
+    def extents(self, index, row):
+        """(y, first, beyond) of each."""
+        return [(y, *row_extent(self.prepared, index, y, self.configuration.width))
+                for y in self.band(index, row)]
+
     def visits(self, index):
         left, right, top, bottom = self.boxes[index]
-        width, bits = self.configuration.width, self.regions.x_bits
+        bits = self.regions.x_bits
         found = []
         for row in range(top, bottom + 1):
-            extents = [(y, *row_extent(self.prepared, index, y, width))
-                       for y in self.band(index, row)]
+            extents = self.extents(index, row)
             least = min(first for _, first, _ in extents)
             most = max(beyond for *_, beyond in extents)
             for column in range(left, right + 1):
