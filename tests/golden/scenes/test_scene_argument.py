@@ -307,7 +307,6 @@ def test_random_numbers_never_change():
     ("spheres:radius=x", "'x' is not a number from 0.001 to 2.0"),
     ("sphereflake:depth=6,tessellation=8",
      "sphereflake: depth, tessellation: makes 313456590848 triangles, more than 4000000"),
-    ("room.scene", "room.scene: extension: scene descriptions (.scene) are not supported yet"),
 ])
 def test_bad_scene_names(text, message):
     with pytest.raises(InputError) as caught:
