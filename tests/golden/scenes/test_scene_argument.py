@@ -66,7 +66,8 @@ def test_listed_triangle_counts_are_those_of_the_scenes():
     listed = {line.name: line.triangles for line in list_scenes()}
     assert listed == {
         "teapot": 992, "sphereflake": 11648, "tetra": 1024, "spheres": 2048, "terrain": 1050,
-        "random": 200,
+        "random": 200, "three_cubes": 8228, "five_primitives": 3602, "thousand_spheres": 128_000,
+        "crystals": 712, "colonnade": 8222,
     }  # fmt: skip
     for name in set(listed) - {"random"}:
         assert make(name).triangles == listed[name]
