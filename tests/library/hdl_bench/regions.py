@@ -1,0 +1,201 @@
+"""Machines whose regions are dealt out, the lines that deal them, and visits by the definition."""
+
+import random
+from dataclasses import dataclass
+
+import numpy as np
+
+from cardcage.golden.organisations.region_table import slots_of
+
+from .bench import Agent
+from .pictures import prepare, prepared_values, small_machine
+
+#: Cards, picture, columns and rows of regions: squares, strips, one row or column at the edge.
+MACHINES = {
+    "squares": ("3x(PM)", (32, 32), (8, 8)),
+    "wide": ("2x(PMM)", (37, 19), (5, 10)),
+    "columns": ("3x(PM)", (24, 20), (12, 1)),
+    "rows": ("4x(PM)", (20, 24), (1, 12)),
+    "few": ("2x(PMMMM)", (16, 9), (2, 2)),
+}
+
+
+def region_machine(name, **changes):
+    cards, size, regions = MACHINES[name]
+    return small_machine(cards, *size, regions=regions, **changes)
+
+
+def random_table(configuration, seed):
+    """int64 (regions,): elements in any order, none with more regions than it has slots."""
+    source = random.Random(f"table {seed}")
+    places = list(range(configuration.processing_elements)) * configuration.slots
+    source.shuffle(places)
+    return np.array(places[:configuration.dealt_regions.count])
+
+
+def region_words(configuration, table):
+    """What the lines say of each region of a table."""
+    columns, slots = configuration.dealt_regions.columns, slots_of(table)
+    return [{"column": region % columns, "row": region // columns, "element": int(element),
+             "slot": int(slots[region])} for region, element in enumerate(table)]
+
+
+class RegionDriver(Agent):
+    """Sets the ``lines`` of a component: a word, or nothing, and the table in use."""
+
+    def __init__(self, lines):
+        self._lines = lines
+
+    def say(self, ctx, word, table):
+        """``word`` goes into the table that is not in use."""
+        for name, value in {"valid": word is not None, "bank": 1 - table, "table": table,
+                            **(word or {})}.items():
+            if len(getattr(self._lines, name)):
+                ctx.set(getattr(self._lines, name), value)
+
+
+class Deal(RegionDriver):
+    """Writes ``tables`` one after the other, each of which is used once it is there.
+
+    ``element`` is the component's input of that name, ``number`` its value.  Agents that need the
+    last table wait for ``clocks``.
+    """
+
+    def __init__(self, lines, configuration, tables, element, number):
+        super().__init__(lines)
+        self._element, self._number = element, number
+        self._words = []
+        for place, table in enumerate(tables):
+            self._words += [(word, place & 1) for word in region_words(configuration, table)]
+        self._words.append((None, len(tables) & 1))
+        self.clocks = len(self._words)
+        self._clock = 0
+
+    @property
+    def finished(self):
+        return self._clock >= self.clocks
+
+    def drive(self, ctx):
+        ctx.set(self._element, self._number)
+        if not self.finished:
+            self.say(ctx, *self._words[self._clock])
+        self._clock += 1
+
+
+class DealFrames(RegionDriver):
+    """Writes the table of each frame while the one before is drawn; its start waits for it."""
+
+    def __init__(self, dut, announcer, tables):
+        super().__init__(dut.regions)
+        self._announcer = announcer
+        self._tables = [region_words(dut.configuration, table) for table in tables]
+        self._left = list(self._tables[0])
+        self._frames = 0
+        announcer.may_start = lambda: not self._left
+
+    def drive(self, ctx):
+        if self._announcer.frames > self._frames:
+            self._frames += 1
+            self._left = list(self._tables[self._frames]) if self._frames < len(
+                self._tables) else []
+        # The first table is written into bank 0.
+        self.say(ctx, self._left.pop(0) if self._left else None, 1 - (self._frames & 1))
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A triangle in a region: column, row and slot of this, and (y, first, beyond) of each row,
+    the two columns cut to the region."""
+
+    column: int
+    row: int
+    slot: int
+    rows: tuple[tuple[int, int, int], ...]
+
+    @property
+    def pixels(self):
+        return sum(max(0, beyond - first) for _, first, beyond in self.rows)
+
+
+def edge_column(edges, index, row):
+    """Of an edge of ``golden.reference.triangle_setup``, so many rows below its first."""
+    column, remainder, column_step, remainder_step, denominator = (
+        int(getattr(edges, name)[index]) for name in (
+            "column", "remainder", "column_step", "remainder_step", "denominator"))
+    return ((column + row * column_step) * denominator + remainder
+            + row * remainder_step) // denominator
+
+
+def row_extent(prepared, index, y, width):
+    """Columns from the first up to, without, the last, held to the picture."""
+    top, middle = int(prepared.top[index]), int(prepared.middle[index])
+    short = (edge_column(prepared.upper, index, y - top) if y < middle
+             else edge_column(prepared.lower, index, y - middle))
+    columns = [edge_column(prepared.long, index, y - top), short]
+    if not prepared.long_edge_left[index]:
+        columns.reverse()
+    return [min(max(column, 0), width) for column in columns]
+
+
+class Dealt:
+    """What the triangles of a list are to an element, by a table."""
+
+    def __init__(self, configuration, table, element, display_list):
+        self.configuration, self.table, self.element = configuration, table, element
+        self.regions = configuration.dealt_regions
+        self.slots = slots_of(table)
+        self.prepared = prepare(configuration, display_list)
+        self.values = prepared_values(configuration, self.prepared)
+        self.boxes = [self._box(value) for value in self.values]
+
+    def _box(self, value):
+        x, y = self.regions.x_bits, self.regions.y_bits
+        return (value["left"] >> x, value["right"] - 1 >> x,
+                value["top"] >> y, value["bottom"] - 1 >> y)
+
+    def large(self, index):
+        left, right, top, bottom = self.boxes[index]
+        return right - left > 1 or bottom - top > 1
+
+    def own(self, column, row):
+        return self.table[row * self.regions.columns + column] == self.element
+
+    def own_bits(self, index):
+        """Of the box's at most 2 × 2 regions."""
+        left, right, top, bottom = self.boxes[index]
+        return sum(self.own(left + x, top + y) << (2 * y + x)
+                   for y in range(bottom - top + 1) for x in range(right - left + 1))
+
+    def kept(self):
+        """Indices of those that the filter keeps."""
+        return [index for index in range(len(self.values))
+                if self.large(index) or self.own_bits(index)]
+
+    def outline(self, index):
+        """As the queue gives it to the walker."""
+        value = {name: field for name, field in self.values[index].items() if name != "planes"}
+        large = self.large(index)
+        return value | {"own": 0 if large else int(self.own_bits(index)), "large": large}
+
+    def band(self, index, row):
+        """Rows of the triangle's box in a row of regions."""
+        value, bits = self.values[index], self.regions.y_bits
+        return range(max(value["top"], row << bits), min(value["bottom"], row + 1 << bits))
+
+    def visits(self, index):
+        left, right, top, bottom = self.boxes[index]
+        width, bits = self.configuration.width, self.regions.x_bits
+        found = []
+        for row in range(top, bottom + 1):
+            extents = [(y, *row_extent(self.prepared, index, y, width))
+                       for y in self.band(index, row)]
+            least = min(first for _, first, _ in extents)
+            most = max(beyond for *_, beyond in extents)
+            for column in range(left, right + 1):
+                begin, end = column << bits, column + 1 << bits
+                meets = least < most and begin < most and least < end
+                if self.own(column, row) and (meets or not self.large(index)):
+                    slot = int(self.slots[row * self.regions.columns + column])
+                    found.append(Visit(column, row, slot, tuple(
+                        (y, max(first, begin), min(beyond, end)) for y, first, beyond in extents)))
+        return found
