@@ -34,6 +34,8 @@ class Operation(enum.Enum, shape=3):
     LOAD = 6  # keep one prepared triangle
     DRAW_LISTS = 7  # have your processing elements draw all that you keep
     CLEAR_LISTS = 0  # keep nothing
+    # In the place of one that only cages of nodes have, where regions are dealt out.
+    READ_REGIONS = 6  # send your count of each slot since the last frame start
 
 
 def struct_layout(layout: commands.Layout) -> data.StructLayout:
