@@ -10,6 +10,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
 from .node_control import NodeControl
 from .one_node import OneNode
+from .region_node import RegionNode
 from .snoop_control import SnoopControl
 from .tree_steps import TreeSteps
 
@@ -133,4 +134,6 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return DirectControl(configuration=configuration)
     if configuration.snoops:
         return SnoopControl(configuration=configuration)
+    if configuration.regions is not None:
+        return RegionNode(configuration=configuration)
     return OneNode()
