@@ -1,6 +1,7 @@
 """The controller where regions are dealt out: tables between frames, and every fault of one."""
 
 import random
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -168,7 +169,7 @@ def check(run, configuration, words):
         assert set(run.lines.drawn[start + 1:end + 1]) == {table}
     # A picture is shown by the table that it was drawn by, in every clock.
     swaps = [*run.scans.swaps, len(run.lines.shown) - 1]
-    for swap, end in zip(swaps, swaps[1:], strict=False):
+    for swap, end in pairwise(swaps):
         begun = [number for number, start in enumerate(starts) if start < swap]
         table = used[begun[-1]] if begun else placed(Tables(configuration).used)
         assert set(run.lines.shown[swap + 1:end + 1]) == {table}
