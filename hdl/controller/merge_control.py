@@ -8,6 +8,7 @@ from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
+from .balanced_regions import BalancedRegions
 from .node_control import NodeControl
 from .one_node import OneNode
 from .region_node import RegionNode
@@ -135,5 +136,6 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
     if configuration.snoops:
         return SnoopControl(configuration=configuration)
     if configuration.regions is not None:
-        return RegionNode(configuration=configuration)
+        kind = RegionNode if configuration.balancer == "host" else BalancedRegions
+        return kind(configuration=configuration)
     return OneNode()

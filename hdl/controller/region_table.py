@@ -7,15 +7,24 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification import commands
 from ...golden.specification.commands import Fault
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.regions import Regions
 from ..backplane.region_lines import RegionLines
 from ..backplane.words import struct_layout
 
-__all__ = ["RegionTable", "region_layout"]
+__all__ = ["RegionTable", "after", "region_layout"]
 
 
 def region_layout(configuration: MachineConfiguration) -> data.StructLayout:
     """A region and its processing element: the body of ``REGION``."""
     return struct_layout(commands.region_layout(configuration))
+
+
+def after(regions: Regions, column: Value, row: Value) -> tuple[Value, Value, Value]:
+    """Column and row of the next region, of the first one after the last, and whether this is the
+    last one."""
+    end_of_row = column == regions.columns - 1
+    last = end_of_row & (row == regions.rows - 1)
+    return Mux(end_of_row, 0, column + 1), Mux(last, 0, row + end_of_row), last
 
 
 class RegionTable(wiring.Component):
@@ -107,8 +116,7 @@ class RegionTable(wiring.Component):
 
         passed_over = refused & ~first
         given = self.offer & ~passed_over & (wrong == 0)
-        end_of_row = region.column == regions.columns - 1
-        end = end_of_row & (region.row == regions.rows - 1)
+        next_column, next_row, last = after(regions, region.column, region.row)
         m.d.comb += self.fault.eq(Mux(self.offer & ~passed_over, wrong, 0))
         m.d.sync += [
             lines.valid.eq(given),
@@ -123,9 +131,9 @@ class RegionTable(wiring.Component):
         with m.If(given):
             m.d.sync += [
                 refused.eq(0),
-                self.whole.eq(end),
-                self.next_column.eq(Mux(end_of_row, 0, region.column + 1)),
-                self.next_row.eq(Mux(end, 0, region.row + end_of_row)),
+                self.whole.eq(last),
+                self.next_column.eq(next_column),
+                self.next_row.eq(next_row),
             ]
             with m.If(first):
                 m.d.sync += [counter.eq(0) for counter in held]
