@@ -21,7 +21,8 @@ WINGS = {
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
-        "controller", "video", "nodes", "snooping", "direct", "machine", "components"),
+        "balancing", "controller", "video", "nodes", "snooping", "direct", "machine",
+        "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
         "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",
