@@ -15,9 +15,9 @@ class Balancer(wiring.Component):
     """Packs regions into processing elements as ``golden.organisations.region_table.packed_table``
     does, heaviest first.
 
-    It keeps one table: as it was dealt last, from then on to the next packing; after that the packed
-    one.  So the table that is dealt at boot is the first one, and the counts that come are
-    understood by the table that was dealt before the picture that they were counted in.
+    It keeps one table: the one that was dealt last, and after a packing the packed one, until that
+    is dealt.  So before the first packing it has what was dealt at boot; and counts are understood
+    by the table by which the picture was drawn that they were counted in.
 
     ::
 
