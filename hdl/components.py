@@ -13,6 +13,7 @@ from ..golden.specification.card_order import (
     MERGE_CARDS,
     SNOOP_MERGE,
 )
+from ..golden.specification.commands import RESPONSE_VALUE_BITS
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
 from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
@@ -21,6 +22,10 @@ from .backplane.connectors import memory_bus_bits
 from .backplane.fragment_lines import unit_fragment_layout
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
+from .balancing.balancer import Balancer
+from .balancing.least_loaded import LeastLoaded
+from .balancing.merge_sorter import MergeSorter
+from .balancing.region_order import RegionOrder, region_shape
 from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
@@ -102,6 +107,29 @@ def _direct(make: Callable[[MachineConfiguration], wiring.Component],
     return make(_merged_by(DIRECT_MERGE, configuration))
 
 
+def _dealt(make: Callable[[MachineConfiguration], wiring.Component],
+           configuration: MachineConfiguration) -> wiring.Component:
+    """What only cages have that deal regions out; with four of these where there are none."""
+    if configuration.regions is None:
+        configuration = MachineConfiguration(
+            cards="PM" * configuration.processing_elements, width=configuration.width,
+            height=configuration.height,
+            regions=(min(2, configuration.width), min(2, configuration.height)))
+    return make(configuration)
+
+
+def _regions(configuration: MachineConfiguration) -> dict[str, int]:
+    """How many there are."""
+    regions = configuration.dealt_regions
+    return {"columns": regions.columns, "rows": regions.rows}
+
+
+def _packing(configuration: MachineConfiguration) -> dict[str, int]:
+    """What regions are packed into, by counts of how many bits."""
+    return {"elements": configuration.maximum_units >> configuration.share_bits,
+            "slots": configuration.slots, "count_bits": RESPONSE_VALUE_BITS}
+
+
 def _fragment(configuration: MachineConfiguration) -> data.StructLayout:
     return unit_fragment_layout(address_bits=configuration.address_bits,
                                 depth_bits=configuration.rank_bits)
@@ -115,6 +143,7 @@ def _depth_of_queues(configuration: MachineConfiguration) -> int:
 #: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     **{name: partial(_board, name) for name in BOARDS},
+    "balancer": partial(_dealt, lambda c: Balancer(**_regions(c), **_packing(c))),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "crossbar": partial(_direct, lambda c: Crossbar(
         elements=c.maximum_nodes, units=c.maximum_units, queue=c.queue, **memory_bus_bits(c))),
@@ -133,7 +162,12 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
+    "least_loaded": partial(_dealt, lambda c: LeastLoaded(
+        label=region_shape(**_regions(c)), **_packing(c))),
     "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
+    "merge_sorter": partial(_dealt, lambda c: MergeSorter(
+        items=c.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
+        label=region_shape(**_regions(c)))),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
@@ -150,6 +184,7 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
     "processing_element_control": lambda c: ProcessingElementControl(
         id_bits=c.id_bits, depth_bits=c.rank_bits, order_bits=c.order_bits),
+    "region_order": partial(_dealt, lambda c: RegionOrder(**_regions(c), **_packing(c))),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "round_robin": partial(_direct, lambda c: RoundRobin(requesters=c.maximum_nodes)),

@@ -12,8 +12,8 @@ class MergeSorter(wiring.Component):
 
     Bottom-up merge sort: a pass merges pairs of neighbouring runs, each sorted, into runs of twice
     the length, from one half of the memory into the other.  What is merged next waits in two
-    registers, one for each run of the pair; an item is merged in one clock and the one behind it read
-    in the next.  The results of the last pass are not written but given.
+    registers, one for each run of the pair; an item is merged in one clock, and the one behind it
+    read in the next.  The results of the last pass are not written but given.
 
     Latency: ``latency`` clocks from the last item to the first that is given; of these a pass, but
     not the last one, takes two for each item and two for each pair.  Throughput: an item a clock

@@ -1,10 +1,10 @@
-"""From counts slot by slot to counts region by region."""
+"""Counts that come slot by slot, put in the order of the regions."""
 
 from amaranth.hdl import *
 from amaranth.lib import data, memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-__all__ = ["RegionCounts", "region_shape"]
+__all__ = ["RegionOrder", "region_shape"]
 
 
 def region_shape(*, columns: int, rows: int) -> data.StructLayout:
@@ -16,7 +16,7 @@ def region_shape(*, columns: int, rows: int) -> data.StructLayout:
     return data.StructLayout({"column": range(columns), "row": range(rows)})
 
 
-class RegionCounts(wiring.Component):
+class RegionOrder(wiring.Component):
     """Takes a count for each slot of each processing element, from left to right, and gives the
     count of each region, row by row.
 
