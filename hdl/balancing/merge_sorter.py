@@ -29,9 +29,8 @@ class MergeSorter(wiring.Component):
 
     Members
     -------
-    put: In(1)
-        ``item`` comes; not before all that were sorted before have been taken.
-    item: In((weight, label))
+    put: In(1), item: In((weight, label))
+        An item comes; not before all that were sorted before have been taken.
     sorted: Out(stream of (weight, label, last))
         ``last`` marks the last one.
 

@@ -43,10 +43,8 @@ class RegionOrder(wiring.Component):
         Where does it lie?
     element: In(range(elements + 1)), slot: In(range(slots))
         There; a clock later.
-    put: Out(1)
-        ``item`` is said in this clock.
-    item: Out((weight, label))
-        The count and the name of a region.
+    put: Out(1), item: Out((weight, label))
+        In this clock a region's count, and its name, are given.
 
     Raises ``ValueError`` for a number that is not positive.
     """
