@@ -24,23 +24,23 @@ Int64 = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class RegionVisits:
-    """Of the triangles ``begin`` … ``end`` - 1 all visits; int64 (n,) each.
+    """All visits of some triangles; int64 (n,) each.
 
+    ``extents``    the rows of these triangles
     ``triangle``   counts in ``Triangles``, not in the display list
     ``region``     its number
-    ``top``        first row of pixels
-    ``rows``       rows visited, at least one
+    ``first``      which of the ``extents`` is the first row visited
+    ``rows``       how many are, at least one
     ``fragments``  covered pixels
 
     In drawing order: triangles ascending, regions ascending within a triangle.  Triangles that
     visit nothing are left out.
     """
 
-    begin: int
-    end: int
+    extents: Extents
     triangle: Int64
     region: Int64
-    top: Int64
+    first: Int64
     rows: Int64
     fragments: Int64
 
@@ -92,11 +92,10 @@ def _visits(triangles: Triangles, grid: RegionGrid, small: NDArray[np.bool_],
     column = np.arange(len(band)) + (left - base).take(band)
     band_of_row = np.cumsum(begins) - 1
     return RegionVisits(
-        begin=extent.begin,
-        end=extent.end,
+        extents=extent,
         triangle=triangle.take(band),
         region=row.take(start).take(band) * grid.columns + column,
-        top=extent.row.take(start).take(band),
+        first=start.take(band),
         rows=height.take(band),
         fragments=_fragments(grid, first, beyond, (base - left).take(band_of_row), len(band)),
     )

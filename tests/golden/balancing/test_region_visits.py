@@ -138,15 +138,17 @@ def test_visits_are_those_of_a_brute_force(name, probes_only):
             chunks = list(region_visits(triangles, grid, row_limit))
             got = {}
             for visits in chunks:
-                assert all(visits.begin <= visits.triangle) and all(visits.triangle < visits.end)
+                rows = visits.extents
+                assert np.array_equal(rows.triangle[visits.first], visits.triangle)
                 got |= {(int(triangles.primitive[triangle]), int(region)): tuple(map(int, rest))
                         for triangle, region, *rest in zip(
-                            visits.triangle, visits.region, visits.top, visits.rows,
+                            visits.triangle, visits.region, rows.row[visits.first], visits.rows,
                             visits.fragments, strict=True)}
             assert got == expected
             assert list(got) == list(expected), "visits are in another order"
-            assert [chunk.begin for chunk in chunks] == [0, *(c.end for c in chunks[:-1])]
-            assert chunks[-1].end == len(triangles)
+            parts = [(chunk.extents.begin, chunk.extents.end) for chunk in chunks]
+            assert [begin for begin, _ in parts] == [0, *(end for _, end in parts[:-1])]
+            assert parts[-1][1] == len(triangles)
         counts = region_counts(display_list, grid)
         triangle_counts, clocks = np.zeros((2, grid.count), int)
         for (_, region), (_, rows, fragments) in expected.items():
@@ -198,6 +200,7 @@ def test_overlap_factor_is_molnars_for_boxes_of_one_size():
     display_list = listed(at + np.array([[0, 0], [12 << 4, 0], [0, 8 << 4]]), 640, 512, 4)
     counts = counts_of(Triangles.of(display_list, Grid.of(display_list)),
                        RegionGrid.of_size(640, 512, 40, 32))
-    # A box of 12 pixels has 11 boundaries between pixels, each at one of 628 places, and lies in two
+    # A box of 12 pixels, at one of 628 places, has 11 boundaries between pixels, and lies in two
     # columns of regions where one of these is one of their 15.
-    assert counts.overlap_factor == pytest.approx((1 + 15 * 11 / 628) * (1 + 15 * 7 / 504), rel=0.02)
+    expected = (1 + 15 * 11 / 628) * (1 + 15 * 7 / 504)
+    assert counts.overlap_factor == pytest.approx(expected, rel=0.02)
