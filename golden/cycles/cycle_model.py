@@ -100,7 +100,8 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     """
     if configuration.merges_directly:
         return _predict_direct(configuration, display_list, pipeline, after, setup, retained)
-    works = [NodeWork(configuration, display_list, node, pipeline, after)
+    organisation = organisation_of(configuration)
+    works = [NodeWork(organisation, display_list, node, pipeline, after)
              for node in range(configuration.nodes)]
     sent, nodes, _ = _sending_order(
         configuration, display_list, np.concatenate([work.primitive for work in works]), retained)
