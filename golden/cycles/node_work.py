@@ -71,7 +71,7 @@ class NodeWork:
                     pipeline, node)
             if configuration.memory_ports == 1
             else TwoPorts(len(self._organisation.domains), pipeline))
-        self.elements = self._ports.elements
+        self.elements: Sequence[Element] = self._ports.elements
         self._bound = np.zeros((2, len(self.elements)))
 
     def _walked(self) -> Iterator[tuple[Entries, WalkedSpans]]:
