@@ -39,8 +39,8 @@ def frames_of(monkeypatch):
 @pytest.mark.parametrize("depths", ["last", "all"])
 @pytest.mark.parametrize("fields", [
     {"balance": "static"}, {"balance": "triangles"}, {"balance": "clocks"},
-    {"balance": "clocks", "balancer": "hardware"}, {"cards": "4x(PMM)", "regions": (3, 2), "slots": 2},
-    {"slots": 7}], ids=str)
+    {"balance": "clocks", "balancer": "hardware"}, {"slots": 7},
+    {"cards": "4x(PMM)", "regions": (3, 2), "slots": 2}], ids=str)
 def test_every_picture_by_the_table_of_the_last_ones_counts(frames_of, fields, depths):
     configuration = machine(**fields)
     frames = frames_of(configuration, depths=depths)
