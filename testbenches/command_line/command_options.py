@@ -45,12 +45,18 @@ class Size(click.ParamType):
 
 
 class RegionCounts(click.ParamType):
-    """``8x4`` as (8, 4): columns and rows of regions."""
+    """``8x4`` as (8, 4): columns and rows of regions; where a word stands for none of them, that
+    as None."""
 
     name = "COLUMNSxROWS"
 
+    def __init__(self, none: str | None = None) -> None:
+        self.none = none
+
     def convert(self, value: Any, param: click.Parameter | None,
-                ctx: click.Context | None) -> tuple[int, int]:
+                ctx: click.Context | None) -> tuple[int, int] | None:
+        if value == self.none:
+            return None
         match = re.fullmatch(r"([0-9]{1,4})[xX]([0-9]{1,4})", value.strip())
         if match is None:
             self.fail(f"{value!r} is not a number of columns and of rows of regions such as 8x8",

@@ -150,6 +150,7 @@ class Answers:
         return [response_fields(kind, value) for value in self._values[kind]]
 
     def frame(self, number: int, reading: int, read_back: int | None = None, *,
+              counted: int | None = None,
               table: NDArray[np.int64] | None = None) -> Simulation:
         """Frame ``number``, that was drawn by ``table``, or where that is None by the one with
         which the machine began.
@@ -157,11 +158,13 @@ class Answers:
         Its work is what that ``reading`` of the counters says, its activity the record that ends
         with the reading, if the engine keeps any; its depths are those of that ``read_back``, by
         default as if each frame's were read back once, or ``NOT_READ``, as ``reading`` may be.
-        Counts of regions are read as often as the counters, if at all.
+        Counts of regions are those of reading ``counted`` of them, by default as if they were read
+        as often as the counters; if they were read at all.
         """
         run, organisation = self._run, self._organisation
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
         read = reading != NOT_READ
+        counted = reading if counted is None else counted
         [units] = self._fields(ResponseKind.UNITS)
         return Simulation(
             video=next(scan.picture for scan in run.scans if scan.cycle > shown),
@@ -176,8 +179,8 @@ class Answers:
             sent=self.sent[reading].tolist() if read else [],
             taken=self.taken[reading].tolist() if read else [],
             followed=self.followed[reading].tolist() if read else [],
-            slot_counts=self.slot_counts[reading] if read and len(self.slot_counts) else None,
-            next_table=self.tables[reading] if read and len(self.tables) else None,
+            slot_counts=self.slot_counts[counted] if read and len(self.slot_counts) else None,
+            next_table=self.tables[counted] if read and len(self.tables) else None,
             owned=units["owned"],
             total=units["total"],
             boot_cycles=self._values[ResponseKind.BOOTED][0],
