@@ -101,8 +101,10 @@ class BroadcastQueue(wiring.Component):
         m.d.sync += arrived.eq(self.strobe & is_triangle)
         share = self._filter.add_to(m, triangle, self)
         assert self._filter.latency == 1  # that of `arrived` and `kept`
-        m.d.sync += [kept.eq(outline), planes.w_data.eq(triangle.planes)]
-        m.d.comb += triangles.w_data.eq(Cat(kept, self._filter.known(m, share, kept, self)))
+        m.d.sync += kept.eq(outline)
+        known = self._filter.known(m, share, kept, self)
+        m.d.sync += planes.w_data.eq(triangle.planes)
+        m.d.comb += triangles.w_data.eq(Cat(kept, known))
         with m.If(self.strobe & ~is_triangle):
             m.d.sync += [waits.eq(1), operation.payload.eq(packet.operation)]
         with m.Elif(operation.valid & operation.ready):
