@@ -40,6 +40,7 @@ from .direct.unit_feed import UnitFeed
 from .machine import BOARDS, boards_of
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
+from .mapping.region_address import RegionAddress
 from .mapping.unit_pixel import UnitPixel
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
@@ -59,6 +60,16 @@ from .rasteriser.interpolator import Interpolator
 from .rasteriser.span_clip import SpanClip
 from .rasteriser.triangle_rows import TriangleRows
 from .rasteriser.triangle_spans import TriangleSpans
+from .regions.band_probes import BandProbes
+from .regions.band_scan import BandScan
+from .regions.large_visits import LargeVisits
+from .regions.own_columns import OwnColumns
+from .regions.own_regions import OwnRegions
+from .regions.region_clip import RegionClip
+from .regions.region_counts import RegionCounts
+from .regions.region_rows import RegionRows
+from .regions.region_spans import RegionSpans
+from .regions.region_visits import RegionVisits
 from .triangle_setup.edge_setup import EdgeSetup
 from .triangle_setup.outline import TriangleOutline
 from .triangle_setup.pixel_box import PixelBox
@@ -107,15 +118,25 @@ def _direct(make: Callable[[MachineConfiguration], wiring.Component],
     return make(_merged_by(DIRECT_MERGE, configuration))
 
 
-def _dealt(make: Callable[[MachineConfiguration], wiring.Component],
+def _dealt(make: Callable[..., wiring.Component],
            configuration: MachineConfiguration) -> wiring.Component:
-    """What only cages have that deal regions out; with four of these where there are none."""
-    if configuration.regions is None:
-        configuration = MachineConfiguration(
-            cards="PM" * configuration.processing_elements, width=configuration.width,
-            height=configuration.height,
-            regions=(min(2, configuration.width), min(2, configuration.height)))
-    return make(configuration)
+    """What only cages have whose regions are dealt out."""
+    return make(configuration=_with_regions(configuration))
+
+
+def _with_regions(configuration: MachineConfiguration) -> MachineConfiguration:
+    """The configuration with regions, and what they cost counted; where it has none with two
+    elements, of two units each, and up to four columns and rows of them."""
+    if configuration.regions is not None:
+        return (replace(configuration, balance="clocks", balancer="host", words=0)
+                if configuration.balance == "static" else configuration)
+    sizes = configuration.width, configuration.height
+    columns, rows = (-(-size >> max(1, (size - 1).bit_length() - 2)) for size in sizes)
+    # A picture of one row or column is too narrow to spread over units.
+    cards = "2x(PMM)" if min(sizes) > 1 else "2x(PM)"
+    return replace(configuration, cards=cards, words=0, maximum_units=0, block=1, skew=False,
+                   packet=1, order_bits=0, list_words=0, maximum_nodes=0, allow_orphans=False,
+                   regions=(columns, rows))
 
 
 def _regions(configuration: MachineConfiguration) -> dict[str, int]:
@@ -143,7 +164,10 @@ def _depth_of_queues(configuration: MachineConfiguration) -> int:
 #: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     **{name: partial(_board, name) for name in BOARDS},
-    "balancer": partial(_dealt, lambda c: Balancer(**_regions(c), **_packing(c))),
+    "balancer": partial(_dealt, lambda configuration: Balancer(
+        **_regions(configuration), **_packing(configuration))),
+    "band_probes": partial(_dealt, BandProbes),
+    "band_scan": partial(_dealt, BandScan),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "crossbar": partial(_direct, lambda c: Crossbar(
         elements=c.maximum_nodes, units=c.maximum_units, queue=c.queue, **memory_bus_bits(c))),
@@ -161,19 +185,22 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "frame_tags": lambda c: FrameTags(tag_bits=c.tag_bits),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
+    "large_visits": partial(_dealt, LargeVisits),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
-    "least_loaded": partial(_dealt, lambda c: LeastLoaded(
-        label=region_shape(**_regions(c)), **_packing(c))),
+    "least_loaded": partial(_dealt, lambda configuration: LeastLoaded(
+        label=region_shape(**_regions(configuration)), **_packing(configuration))),
     "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
-    "merge_sorter": partial(_dealt, lambda c: MergeSorter(
-        items=c.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
-        label=region_shape(**_regions(c)))),
+    "merge_sorter": partial(_dealt, lambda configuration: MergeSorter(
+        items=configuration.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
+        label=region_shape(**_regions(configuration)))),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.rank_bits,
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
+    "own_columns": partial(_dealt, OwnColumns),
+    "own_regions": partial(_dealt, OwnRegions),
     "picture_maps": lambda c: PictureMaps(words=c.words),
     # The one that computes the area of a triangle.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
@@ -184,7 +211,14 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
     "processing_element_control": lambda c: ProcessingElementControl(
         id_bits=c.id_bits, depth_bits=c.rank_bits, order_bits=c.order_bits),
-    "region_order": partial(_dealt, lambda c: RegionOrder(**_regions(c), **_packing(c))),
+    "region_address": partial(_dealt, RegionAddress),
+    "region_clip": partial(_dealt, RegionClip),
+    "region_counts": partial(_dealt, RegionCounts),
+    "region_order": partial(_dealt, lambda configuration: RegionOrder(
+        **_regions(configuration), **_packing(configuration))),
+    "region_rows": partial(_dealt, RegionRows),
+    "region_spans": partial(_dealt, RegionSpans),
+    "region_visits": partial(_dealt, RegionVisits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "round_robin": partial(_direct, lambda c: RoundRobin(requesters=c.maximum_nodes)),

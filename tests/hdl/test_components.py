@@ -24,7 +24,7 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
     for cards, changes in (
             ("PMMPMM", {}), ("PMMPMM", {"memory_ports": 2}), ("PMMC", {}), ("PMMT", {}),
             ("PMMSF", {}), ("PPDMM", {"memory_ports": 2}),
-            ("PMMPMM", {"regions": (3, 2), "balancer": "hardware"})):
+            ("PMMPMM", {"regions": (3, 4), "balancer": "hardware"})):
         configuration = small_machine(cards, 9, 7, shading="gouraud", setup="hardware",
                                       **{"memory_ports": 1} | changes)
         with monkeypatch.context() as patch:
