@@ -5,12 +5,16 @@ from itertools import product
 
 import numpy as np
 import pytest
+from amaranth.hdl import Fragment
 from amaranth.sim import Simulator
 from hdl_bench.bench import rejects
 
 from cardcage.golden.balancing.balancer_clocks import balancer_clocks
 from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
 from cardcage.hdl.balancing.balancer import Balancer
+from cardcage.hdl.balancing.least_loaded import LeastLoaded
+from cardcage.hdl.balancing.merge_sorter import MergeSorter
+from cardcage.hdl.balancing.region_order import RegionOrder
 
 
 class Cage:
@@ -157,6 +161,16 @@ def test_clocks(columns, rows, elements, slots, there):
     regions = columns * rows
     cage.show([(there, [pick.getrandbits(32) for _ in range(regions)])])
     assert cage.clocks == [balancer_clocks(regions, there, slots)]
+
+
+@pytest.mark.parametrize(("regions", "elements", "slots"), [(1, 1, 1), (7, 3, 4), (128, 16, 10)])
+def test_the_clocks_are_those_that_the_parts_state(regions, elements, slots):
+    sorter = MergeSorter(items=regions, weight_bits=1, label=1)
+    Fragment.get(sorter, None)  # Amaranth wants each elaborated
+    # Clocks are numbered from that of the first count on.
+    last_put = elements * slots - 1 + RegionOrder.latency + regions - 1
+    last_given = last_put + sorter.latency + (regions - 1) * (elements + LeastLoaded.overhead)
+    assert balancer_clocks(regions, elements, slots) == last_given + 1
 
 
 def test_128_regions_in_16_elements_take_at_most_6000_clocks():
