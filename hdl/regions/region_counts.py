@@ -74,11 +74,12 @@ class RegionCounts(wiring.Component):
             write.data.eq(Mux(again, sum_before, before) + addend),
         ]
 
-        reporting, asked, asks = Signal(), Signal(), Signal()
+        reporting, asked, asks, free = Signal(), Signal(), Signal(), Signal()
         place = Signal(range(slots + 1))
         m.d.comb += [
-            asks.eq(reporting & ~asked & (place != slots) & (~self.counts.valid | self.counts.ready)),
-            self.done.eq(reporting & ~asked & (place == slots) & ~self.counts.valid),
+            free.eq(reporting & ~asked & (~self.counts.valid | self.counts.ready)),
+            asks.eq(free & (place != slots)),
+            self.done.eq(free & (place == slots)),
             read.addr.eq(Mux(reporting, place, slot)),
         ]
         m.d.sync += [known.eq(counted.bit_select(read.addr, 1)), asked.eq(asks)]

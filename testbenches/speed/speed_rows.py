@@ -16,7 +16,7 @@ from ..frames.setup_timing import setup_timing
 from ..machine_options import MachineOptions
 from .cases import AS_IT_IS, CaseLists, Order, case_lists
 from .machines import BenchMachine
-from .measure import Measurement, measure
+from .measure import Measurement, measure, packed_table_of
 
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
@@ -104,12 +104,14 @@ def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, Bench
     """``case``, longer where it must be, and what the model says of that."""
     configuration = machine.configuration
     setup = setup_timing(configuration)
+    table = packed_table_of(configuration, case)
     began = time.perf_counter()
-    once = predict_cycles(configuration, case.once, setup=setup)
+    once = predict_cycles(configuration, case.once, setup=setup, table=table)
     if (times := _times(configuration, once)) > 1:
         case = case.repeated(times)
-        once = predict_cycles(configuration, case.once, setup=setup)
-    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
+        table = packed_table_of(configuration, case)
+        once = predict_cycles(configuration, case.once, setup=setup, table=table)
+    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup, table=table)
     seconds = time.perf_counter() - began
     return case, BenchRow(
         machine, case.title, case.order, case.once.triangles, measured=None,

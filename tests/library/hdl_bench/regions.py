@@ -33,23 +33,41 @@ def random_table(configuration, seed):
     return np.array(places[:configuration.dealt_regions.count])
 
 
-class Deal(Agent):
-    """Writes ``tables`` one after the other, each into the bank that is not in use and then used.
+def region_words(configuration, table):
+    """What the lines say of each region of a table."""
+    columns, slots = configuration.dealt_regions.columns, slots_of(table)
+    return [{"column": region % columns, "row": region // columns, "element": int(element),
+             "slot": int(slots[region])} for region, element in enumerate(table)]
 
-    ``lines`` are those of a component.  Agents that need a table wait for ``clocks``.
+
+class RegionDriver(Agent):
+    """Sets the ``lines`` of a component: a word, or nothing, and the table in use."""
+
+    def __init__(self, lines):
+        self._lines = lines
+
+    def say(self, ctx, word, table):
+        """``word`` goes into the table that is not in use."""
+        for name, value in {"valid": word is not None, "bank": 1 - table, "table": table,
+                            **(word or {})}.items():
+            if len(getattr(self._lines, name)):
+                ctx.set(getattr(self._lines, name), value)
+
+
+class Deal(RegionDriver):
+    """Writes ``tables`` one after the other, each of which is used once it is there.
+
+    ``element`` is the component's input of that name, ``number`` its value.  Agents that need the
+    last table wait for ``clocks``.
     """
 
-    def __init__(self, lines, configuration, tables, element=None, number=0):
-        self._lines, self._element, self._number = lines, element, number
-        columns = configuration.dealt_regions.columns
+    def __init__(self, lines, configuration, tables, element, number):
+        super().__init__(lines)
+        self._element, self._number = element, number
         self._words = []
-        for bank, table in enumerate(tables):
-            slots = slots_of(table)
-            self._words += [
-                {"valid": 1, "bank": (bank + 1) & 1, "column": region % columns,
-                 "row": region // columns, "element": int(element), "slot": int(slots[region]),
-                 "table": bank & 1} for region, element in enumerate(table)]
-            self._words += [{"valid": 0, "table": (bank + 1) & 1}]
+        for place, table in enumerate(tables):
+            self._words += [(word, place & 1) for word in region_words(configuration, table)]
+        self._words.append((None, len(tables) & 1))
         self.clocks = len(self._words)
         self._clock = 0
 
@@ -58,14 +76,30 @@ class Deal(Agent):
         return self._clock >= self.clocks
 
     def drive(self, ctx):
-        if self._element is not None:
-            ctx.set(self._element, self._number)
-        if self._clock < self.clocks:
-            for name, value in self._words[self._clock].items():
-                port = getattr(self._lines, name)
-                if len(port):
-                    ctx.set(port, value)
+        ctx.set(self._element, self._number)
+        if not self.finished:
+            self.say(ctx, *self._words[self._clock])
         self._clock += 1
+
+
+class DealFrames(RegionDriver):
+    """Writes the table of each frame while the one before is drawn; its start waits for it."""
+
+    def __init__(self, dut, announcer, tables):
+        super().__init__(dut.regions)
+        self._announcer = announcer
+        self._tables = [region_words(dut.configuration, table) for table in tables]
+        self._left = list(self._tables[0])
+        self._frames = 0
+        announcer.may_start = lambda: not self._left
+
+    def drive(self, ctx):
+        if self._announcer.frames > self._frames:
+            self._frames += 1
+            self._left = list(self._tables[self._frames]) if self._frames < len(
+                self._tables) else []
+        # The first table is written into bank 0.
+        self.say(ctx, self._left.pop(0) if self._left else None, 1 - (self._frames & 1))
 
 
 @dataclass(frozen=True)
