@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator, PercentFormatter, StrMethodFormatter
 
 from ...reports.page import chart_style, svg_element
-from .dealing import CLOCKS, LAST, STATIC, THIS, TRIANGLES
+from .dealing import CLOCKS, LAST, SCATTERED, STATIC, THIS, TRIANGLES
 from .frame_time import RATIOS as TIMED_RATIOS
 from .frame_time import relative_times
 from .model_dealing import ModelDealing
@@ -25,7 +25,7 @@ COLORS = dict(zip(RATIOS, ("#7a7a7a", "#b0643c", "#d98a2b", "#8aa02b", "#2a9d6f"
 
 #: What tables are made of, and how each panel of figure 4 draws it.
 PANELS = {
-    "static: region modulo processors": {STATIC: "-"},
+    "static": {STATIC: ":", SCATTERED: "-."},
     "by triangles": {f"{TRIANGLES}, {THIS}": "--", f"{TRIANGLES}, {LAST}": "-"},
     "by clocks": {f"{CLOCKS}, {THIS}": "--", f"{CLOCKS}, {LAST}": "-"},
 }
@@ -73,8 +73,9 @@ def _utilisation_panels(panels: Sequence[Axes], model: ModelDealing) -> None:
 
 def _legend(figure: Figure) -> None:
     lines = [Line2D([], [], color=color, label=f"{ratio}") for ratio, color in COLORS.items()]
-    lines += [Line2D([], [], color="#888888", linestyle="--", label="this frame's counts"),
-              Line2D([], [], color="#888888", linestyle="-", label="the last frame's")]
+    lines += [Line2D([], [], color="#888888", linestyle=style, label=label)
+              for style, label in (("--", "this frame's counts"), ("-", "the last frame's"),
+                                   (":", "static"), ("-.", "scattered"))]
     figure.legend(handles=lines, loc="outside lower center", ncols=len(lines), frameon=False,
                   fontsize=9, title="regions a processor", title_fontsize=9)
 

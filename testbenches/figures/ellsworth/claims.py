@@ -30,6 +30,9 @@ DROP = 0.12
 OVERLAP_REGIONS = 256
 OVERLAP = (1.09, 1.4)
 
+#: Of the time of a frame, within which one ratio is as good as another.
+AS_GOOD = 0.01
+
 #: The ratio that the paper chooses, and by how much longer a frame may take than at the best one.
 COMPROMISE = 8
 COMPROMISE_COST = 0.05
@@ -97,9 +100,11 @@ def _of_figure_4(model: ModelDealing) -> Iterator[tuple[str, bool, str]]:
             for each, ratio in zip(model.processors, needed, strict=True)))
     pairs = [(model.utilisation(each, ratio, STATIC), model.utilisation(each, ratio, PAPERS))
              for each, ratio in product(model.processors, ALL_RATIOS) if ratio > 1]
-    yield UNBALANCED, all(static <= packed + NEAR for static, packed in pairs), (
-        f"{_mean([static for static, _ in pairs]):.2f} on average at ratios above 1, by the last "
-        f"frame's triangles {_mean([packed for _, packed in pairs]):.2f}")
+    worse = sum(static <= packed + NEAR for static, packed in pairs)
+    yield UNBALANCED, worse == len(pairs), (
+        f"in {worse} of {len(pairs)} cases; {_mean([static for static, _ in pairs]):.2f} on average "
+        "at ratios above 1, by the last frame's triangles "
+        f"{_mean([packed for _, packed in pairs]):.2f}")
     if str(OVERLAP_REGIONS) in model.found["visits"]:
         overlap = model.overlap(OVERLAP_REGIONS)
         yield OVERLAPS, OVERLAP[0] <= overlap <= OVERLAP[1], (
@@ -110,10 +115,11 @@ def _of_figure_5(model: ModelDealing) -> Iterator[tuple[str, bool, str]]:
     best, times = best_ratio(model), mean_times(model)
     if model.model.best_ratio is not None:
         by_clocks = best_ratio(model, how=f"clocks, {LAST}")
-        yield BEST, best == model.model.best_ratio, (
-            f"{best} is best, by our costs; {model.model.best_ratio} takes "
-            f"{_more(times[RATIOS.index(model.model.best_ratio)], min(times))} longer; by the last "
-            f"frame's clocks {by_clocks} is best")
+        papers = times[RATIOS.index(model.model.best_ratio)]
+        yield BEST, papers <= (1 + AS_GOOD) * min(times), (
+            f"{best} is best, by our costs, and {model.model.best_ratio} takes "
+            f"{_more(papers, min(times))} longer; with tables by the last frame's clocks "
+            f"{by_clocks} is best")
     ratios = [best_where_sending_costs(model, factor) for factor in SENDING]
     yield SENDS, ratios[-1] < ratios[0] and all(a >= b for a, b in pairwise(ratios)), (
         "best " + ", ".join(f"{ratio} where sending costs {factor:g} times as much"

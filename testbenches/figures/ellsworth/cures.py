@@ -17,6 +17,9 @@ Float64 = NDArray[np.float64]
 #: on half as fast again at most.
 GOES_ON = (-0.5, 1.5)
 
+#: How much of a count is thought to spread to its neighbours: between none and as blurred.
+SPREADS = (0.0, 1.0)
+
 #: Who can use a cure.
 COUNTERS, BOXES, NOBODY = "counters", "boxes ahead", "-"
 
@@ -57,20 +60,28 @@ class Seen:
         return np.asarray(field.reshape(-1), np.float64)
 
 
-def _goes_on(growth: Float64, growth_before: Float64) -> float:
-    """By what factor the growth before would have foretold the last one best, in least squares."""
-    square = float(growth_before @ growth_before)
-    factor = float(growth @ growth_before) / square if square else 0.0
-    return min(max(factor, GOES_ON[0]), GOES_ON[1])
+def _foretold(growth: Float64, *by: Float64) -> list[float]:
+    """By what factor each would have foretold the growth best, in least squares together."""
+    return [float(factor) for factor in np.linalg.lstsq(np.stack(by, axis=1), growth)[0]]
 
 
-def _learnt(seen: Seen) -> Float64:
-    return seen.last + _goes_on(seen.growth, seen.growth_before) * seen.growth
+def _held(factor: float, bounds: tuple[float, float]) -> float:
+    return min(max(factor, bounds[0]), bounds[1])
 
 
-def _learnt_blurred(seen: Seen) -> Float64:
-    growth, before = (seen.blurred(each, 1 / 4) for each in (seen.growth, seen.growth_before))
-    return seen.last + _goes_on(seen.growth, before) * growth
+def _growth_learnt(seen: Seen) -> Float64:
+    [goes_on] = _foretold(seen.growth, seen.growth_before)
+    return seen.last + _held(goes_on, GOES_ON) * seen.growth
+
+
+def _growth_and_blur_learnt(seen: Seen) -> Float64:
+    before_last = seen.clocks[1].astype(np.float64)
+    growth, growth_before, last, before = (
+        seen.blurred(each, 1 / 4)
+        for each in (seen.growth, seen.growth_before, seen.last, before_last))
+    goes_on, spreads = _foretold(seen.growth, growth_before, before - before_last)
+    return (seen.last + _held(goes_on, GOES_ON) * growth
+            + _held(spreads, SPREADS) * (last - seen.last))
 
 
 def _boxes_at_cost(seen: Seen) -> Float64:
@@ -107,8 +118,8 @@ CURES = (
          lambda seen: seen.last + np.maximum(seen.growth, 0)),
     Cure("growth blurred", COUNTERS,
          lambda seen: seen.last + seen.blurred(seen.growth, 1 / 8)),
-    Cure("growth learnt", COUNTERS, _learnt),
-    Cure("growth blurred and learnt", COUNTERS, _learnt_blurred),
+    Cure("growth learnt", COUNTERS, _growth_learnt),
+    Cure("growth and blur learnt", COUNTERS, _growth_and_blur_learnt),
     Cure("coming boxes", BOXES, lambda seen: seen.boxes[0].boxes),
     Cure("coming boxes' pixels", BOXES, lambda seen: seen.boxes[0].pixels),
     Cure("coming boxes at last frame's cost", BOXES, _boxes_at_cost),

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....golden.balancing.region_counts import RegionCounts, utilisation
+from ....golden.balancing.region_grid import RegionGrid
 from ....golden.organisations.region_table import packed_table, static_table
 from ....golden.specification.regions import default_slots
 from ...support.measurement_cache import measured_once, package_hash
@@ -22,10 +23,10 @@ from .screen_grids import RATIOS, processors_for, screen_grid
 Int64 = NDArray[np.int64]
 
 #: Of a frame, by what its table was made; and what no table exceeds, as no region can be cut.
-STATIC, CEILING = "static", "ceiling"
+STATIC, SCATTERED, CEILING = "static", "static, scattered", "ceiling"
 TRIANGLES, CLOCKS = "triangles", "clocks"
 THIS, LAST = "this frame", "last frame"
-HOW = (STATIC, *(f"{count}, {frame}" for count in (TRIANGLES, CLOCKS) for frame in (THIS, LAST)),
+HOW = (STATIC, SCATTERED, *(f"{count}, {frame}" for count in (TRIANGLES, CLOCKS) for frame in (THIS, LAST)),
        CEILING)
 
 #: Where cures are tried: at the paper's ratio.
@@ -39,6 +40,14 @@ BEFORE = 3
 def dealt(counts: Int64, processors: int) -> Int64:
     """The table that machines make of counts, with as many slots as they have by default."""
     return packed_table(counts, processors, default_slots(len(counts), processors))
+
+
+def scattered_table(grid: RegionGrid, processors: int) -> Int64:
+    """A static one in which a processor's regions lie far from each other: from row to row it moves
+    on by some 3/8 of the processors, an odd number."""
+    region = np.arange(grid.count)
+    step = round(0.382 * processors) | 1
+    return np.asarray((region % grid.columns + step * (region // grid.columns)) % processors)
 
 
 def cure_processors(size: Size) -> list[int]:
@@ -122,15 +131,17 @@ def _facts(now: FrameCounts, seen: Sequence[FrameCounts], size: Size) -> dict[st
         "clocks": {str(regions): int(counts.clocks.sum())
                    for regions, counts in now.regions.items()},
         "utilisation": {str(each): {
-            str(ratio): _utilisations(now.regions[each * ratio], last[each * ratio], each)
+            str(ratio): _utilisations(now.regions[each * ratio], last[each * ratio], each,
+                                      screen_grid(size, each * ratio))
             for ratio in RATIOS} for each in processors_for(size)},
         "cures": {str(each): _cured(now, seen, each, size) for each in cure_processors(size)},
     }
 
 
-def _utilisations(now: RegionCounts, last: RegionCounts, processors: int) -> dict[str, float]:
+def _utilisations(now: RegionCounts, last: RegionCounts, processors: int, grid: RegionGrid
+                  ) -> dict[str, float]:
     """In clocks, whatever the table was made of."""
-    tables = [static_table(len(now.clocks), processors),
+    tables = [static_table(grid.count, processors), scattered_table(grid, processors),
               *(dealt(counts, processors) for counts in
                 (now.triangles, last.triangles, now.clocks, last.clocks))]
     found = [utilisation(now.clocks, table, processors) for table in tables]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ...support.text_table import TextTable
 from .claims import summary
 from .cures import CURES
-from .dealing import CEILING, CLOCKS, CURE_RATIO, HOW, THIS
+from .dealing import CEILING, CLOCKS, CURE_RATIO, HOW, SCATTERED, STATIC, THIS
 from .ellsworth import Ellsworth
 from .findings import findings
 from .frame_time import COSTS, RATIOS, SENDING, best_ratio, best_where_sending_costs, mean_times
@@ -67,14 +67,15 @@ def cure_table(models: Sequence[ModelDealing]) -> TextTable:
     columns = [(model, each) for model in models for each in model.cure_processors]
     rows = [(cure.name, cure.needs, *(f"{model.cured(cure.name, each):.3f}"
                                       for model, each in columns)) for cure in CURES]
-    rows += [(name, NOTHING, *(f"{model.utilisation(each, CURE_RATIO, how):.3f}"
-                               for model, each in columns))
-             for name, how in (("this frame's clocks", f"{CLOCKS}, {THIS}"),
-                               ("no table exceeds", CEILING))]
+    bounds = [(name, NOTHING, *(f"{model.utilisation(each, CURE_RATIO, how):.3f}"
+                                for model, each in columns))
+              for name, how in (("static", STATIC), (SCATTERED, SCATTERED),
+                                ("this frame's clocks", f"{CLOCKS}, {THIS}"),
+                                ("no table exceeds", CEILING))]
     return TextTable(
         f"cures for the last frame's loss: utilisation at {CURE_RATIO} regions a processor",
         ("table by", "needs", *(f"{model.model.name} on {each}" for model, each in columns)),
-        tuple(rows))
+        (*bounds[:2], *rows, *bounds[2:]))
 
 
 def time_table(models: Sequence[ModelDealing]) -> TextTable:

@@ -32,9 +32,9 @@ class Costs:
     """
 
     transform: float = 20.0
-    send: float = 10.0
+    send: float = 5.0
     set_up: float = 10.0
-    region: float = 100.0
+    region: float = 10.0
 
 
 COSTS = Costs()
