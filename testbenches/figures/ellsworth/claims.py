@@ -102,9 +102,9 @@ def _of_figure_4(model: ModelDealing) -> Iterator[tuple[str, bool, str]]:
              for each, ratio in product(model.processors, ALL_RATIOS) if ratio > 1]
     worse = sum(static <= packed + NEAR for static, packed in pairs)
     yield UNBALANCED, worse == len(pairs), (
-        f"in {worse} of {len(pairs)} cases; {_mean([static for static, _ in pairs]):.2f} on average "
-        "at ratios above 1, by the last frame's triangles "
-        f"{_mean([packed for _, packed in pairs]):.2f}")
+        f"in {worse} of {len(pairs)} cases; at ratios above 1 they are used to "
+        f"{_mean([static for static, _ in pairs]):.2f} on average, and by the last frame's "
+        f"triangles to {_mean([packed for _, packed in pairs]):.2f}")
     if str(OVERLAP_REGIONS) in model.found["visits"]:
         overlap = model.overlap(OVERLAP_REGIONS)
         yield OVERLAPS, OVERLAP[0] <= overlap <= OVERLAP[1], (

@@ -26,8 +26,8 @@ Int64 = NDArray[np.int64]
 STATIC, SCATTERED, CEILING = "static", "static, scattered", "ceiling"
 TRIANGLES, CLOCKS = "triangles", "clocks"
 THIS, LAST = "this frame", "last frame"
-HOW = (STATIC, SCATTERED, *(f"{count}, {frame}" for count in (TRIANGLES, CLOCKS) for frame in (THIS, LAST)),
-       CEILING)
+HOW = (STATIC, SCATTERED,
+       *(f"{count}, {frame}" for count in (TRIANGLES, CLOCKS) for frame in (THIS, LAST)), CEILING)
 
 #: Where cures are tried: at the paper's ratio.
 CURE_PROCESSORS = (16, 64, 256)
