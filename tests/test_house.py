@@ -20,8 +20,9 @@ WINGS = {
         "precision"),
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
-        "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all", "controller",
-        "video", "nodes", "snooping", "direct", "machine", "components"),
+        "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
+        "balancing", "controller", "video", "nodes", "snooping", "direct", "machine",
+        "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
         "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",

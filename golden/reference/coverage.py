@@ -66,10 +66,10 @@ class Triangles:
         x, y = corners[0::2], corners[1::2]
         x_low, x_high = _range(x)
         y_low, y_high = _range(y)
-        left = _first_centre(x_low, grid.unit_x, grid.width)
-        right = _first_centre(x_high, grid.unit_x, grid.width)
-        top = _first_centre(y_low, grid.unit_y, grid.height)
-        bottom = _first_centre(y_high, grid.unit_y, grid.height)
+        left = first_centre(x_low, grid.unit_x, grid.width)
+        right = first_centre(x_high, grid.unit_x, grid.width)
+        top = first_centre(y_low, grid.unit_y, grid.height)
+        bottom = first_centre(y_high, grid.unit_y, grid.height)
         kept = np.flatnonzero((left < right) & (top < bottom))
 
         # Within the box of a triangle of size S (and its pixels lie within it)
@@ -106,7 +106,7 @@ def _range(values: Integers) -> tuple[Integers, Integers]:
             np.maximum(np.maximum(first, second), third))  # fmt: skip
 
 
-def _first_centre(coordinate: Integers, unit: int, limit: int) -> Integers:
+def first_centre(coordinate: Integers, unit: int, limit: int) -> Integers:
     """The first pixel whose centre is not before ``coordinate``, held to 0 … limit.
 
     ceil((c - unit/2) / unit) = floor((c + unit/2 - 1) / unit), a shift.

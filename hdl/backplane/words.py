@@ -34,6 +34,8 @@ class Operation(enum.Enum, shape=3):
     LOAD = 6  # keep one prepared triangle
     DRAW_LISTS = 7  # have your processing elements draw all that you keep
     CLEAR_LISTS = 0  # keep nothing
+    # In the place of one that only cages of nodes have, where regions are dealt out.
+    READ_REGIONS = 6  # send your count of each slot since the last frame start
 
 
 def struct_layout(layout: commands.Layout) -> data.StructLayout:
@@ -63,12 +65,19 @@ def row_shape(configuration: MachineConfiguration) -> Shape:
 
 
 def walked_outline_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """An outline, and above it what of the processing element's lattice is known early.
+    """An outline, and above it what of the processing element's pixels is known early.
 
     ``first_row``   the first owned row, where the domain is one lattice
     ``second_row``  the one after it
     ``one_row``     that is past the triangle's end
+
+    Where regions are dealt out, instead:
+
+    ``own``         which of the box's at most 2 × 2 regions are its own, row by row
+    ``large``       the box has more regions, of which nothing is known
     """
+    if configuration.regions is not None:
+        return data.StructLayout({**outline_layout(configuration).members, "own": 4, "large": 1})
     return data.StructLayout({**outline_layout(configuration).members,
                               "first_row": row_shape(configuration),
                               "second_row": row_shape(configuration),
@@ -111,7 +120,9 @@ def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``end``             column that its last pixel lies before
     ``left``            the triangle's first column, from which interpolants count
     ``y_steps``         rows from the triangle's first one, likewise
-    ``stride``          distance between neighbouring pixels of the run
+    ``stride``          distance between neighbouring pixels of the run; where regions are dealt
+                        out it is 1, and in its place is
+    ``slot``            where their region lies
     ``none``            no pixel at all
     ``last``            nothing of the triangle follows
     """
@@ -121,7 +132,8 @@ def span_layout(configuration: MachineConfiguration) -> data.StructLayout:
         "end": unsigned(configuration.x_bits),
         "left": unsigned(configuration.x_bits),
         "y_steps": unsigned(configuration.y_bits),
-        "stride": range(configuration.maximum_units + 1),
+        **({"stride": range(configuration.maximum_units + 1)} if configuration.regions is None
+           else {"slot": configuration.table_bits}),
         "none": 1,
         "last": 1,
     })

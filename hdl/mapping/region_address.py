@@ -1,13 +1,27 @@
 """Pixel → unit arithmetic where regions of the screen are dealt out."""
 
 from amaranth.hdl import *
-from amaranth.lib import wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
 from .interlace import unit_number, without
 
-__all__ = ["RegionAddress"]
+__all__ = ["RegionAddress", "visited_layout"]
+
+
+def visited_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """The region in which a row is walked.
+
+    ``column``  its column, by which the row's ends are cut
+    ``slot``    where it lies in its processing element's units
+    ``ends``    this is the last row that the triangle has there
+    """
+    return data.StructLayout({
+        "column": configuration.dealt_regions.column_bits,
+        "slot": configuration.table_bits,
+        "ends": 1,
+    })
 
 
 class RegionAddress(wiring.Component):

@@ -10,10 +10,9 @@ from ..backplane.words import (
     broadcast_layout,
     outline_layout,
     planes_layout,
-    row_shape,
     walked_outline_layout,
 )
-from ..mapping.lattice import next_owned
+from ..regions.region_filter import RegionFilter
 from .share_filter import ShareFilter
 
 __all__ = ["BroadcastQueue"]
@@ -22,7 +21,7 @@ __all__ = ["BroadcastQueue"]
 class BroadcastQueue(wiring.Component):
     """Takes what concerns this processing element, and gives it back in order.
 
-    A triangle that ``ShareFilter`` drops is passed over as it is announced, and costs
+    A triangle that ``ShareFilter`` drops, or ``RegionFilter``, is passed over as it is announced, and costs
     nothing.  Rows and edges wait apart from the interpolants: those are needed later,
     pixel by pixel, and stay at their output until a triangle's last one.
 
@@ -41,6 +40,8 @@ class BroadcastQueue(wiring.Component):
         There is room.
     lattice: In(lattice_layout), whole: In(1)
         The pixels of the domain, where it is one block of units (``ShareFilter``).
+    regions: In(RegionLines), element: In(element_bits)
+        In the place of those where regions are dealt out (``RegionFilter``).
     triangles: Out(stream of walked_outline_layout)
     planes: Out(stream of planes_layout)
         The triangles' interpolants, each at least as early as its outline.
@@ -58,7 +59,8 @@ class BroadcastQueue(wiring.Component):
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
-        self._filter = ShareFilter(configuration=configuration)
+        kind = ShareFilter if configuration.regions is None else RegionFilter
+        self._filter = kind(configuration=configuration)
         super().__init__({
             "strobe": In(1),
             "packet": In(broadcast_layout(configuration)),
@@ -73,7 +75,7 @@ class BroadcastQueue(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         configuration, packet = self.configuration, self.packet
-        depth, square_bits = configuration.fifo_depth, configuration.square_bits
+        depth = configuration.fifo_depth
         # One place is the output register, into which a word moves a clock later: with two in all,
         # the second of two words in a row would find the other place taken.
         places = max(depth, 3)
@@ -85,8 +87,6 @@ class BroadcastQueue(wiring.Component):
         triangle = packet.body.draw
         is_triangle = packet.operation == Operation.DRAW
         kept = Signal(outline_layout(configuration), reset_less=True)
-        kept_row = Signal(row_shape(configuration), reset_less=True)
-        second_row = Signal(row_shape(configuration), reset_less=True)
         # The interpolants follow on the outline, and after them only the node, which is this one.
         outline = Value.cast(packet.body)[:outline_layout(configuration).size]
         assert (len(outline) + planes_layout(configuration).size + configuration.node_bits
@@ -101,15 +101,10 @@ class BroadcastQueue(wiring.Component):
         m.d.sync += arrived.eq(self.strobe & is_triangle)
         share = self._filter.add_to(m, triangle, self)
         assert self._filter.latency == 1  # that of `arrived` and `kept`
-        m.d.sync += [
-            kept.eq(outline),
-            kept_row.eq(share.first_row),
-            planes.w_data.eq(triangle.planes),
-        ]
-        m.d.comb += [
-            second_row.eq(next_owned(kept_row, self.lattice.y_mask, square_bits)),
-            triangles.w_data.eq(Cat(kept, kept_row, second_row, second_row >= kept.bottom)),
-        ]
+        m.d.sync += kept.eq(outline)
+        known = self._filter.known(m, share, kept, self)
+        m.d.sync += planes.w_data.eq(triangle.planes)
+        m.d.comb += triangles.w_data.eq(Cat(kept, known))
         with m.If(self.strobe & ~is_triangle):
             m.d.sync += [waits.eq(1), operation.payload.eq(packet.operation)]
         with m.Elif(operation.valid & operation.ready):

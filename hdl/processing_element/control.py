@@ -29,6 +29,8 @@ class ProcessingElementControl(wiring.Component):
         As of ``MemoryBus``.
     order_bits: int
         The low bits of a depth word that are no depth, and not reported.
+    counts_regions: bool
+        Regions are dealt out, and what they cost is counted.
 
     Members
     -------
@@ -54,12 +56,15 @@ class ProcessingElementControl(wiring.Component):
         0 while not valid.
     idle: Out(1)
         No operation here, and the datapath is empty.
+    counts_start: Out(1), counts_done: In(1), counts: In(stream of RESPONSE_VALUE_BITS)
+        A third service, of ``RegionCounts``, only if it ``counts_regions``; 0 while not valid.
 
     Fuchs & Johnson, the steps after figure 12.  Raises ``ValueError`` where a number of bits is
     not positive.
     """
 
-    def __init__(self, *, id_bits: int, depth_bits: int, order_bits: int = 0):
+    def __init__(self, *, id_bits: int, depth_bits: int, order_bits: int = 0,
+                 counts_regions: bool = False):
         for name, bits in (("id_bits", id_bits), ("depth_bits", depth_bits)):
             if bits < 1:
                 raise ValueError(f"{name} must be positive, not {bits!r}")
@@ -68,6 +73,7 @@ class ProcessingElementControl(wiring.Component):
         self.id_bits = id_bits
         self.depth_bits = depth_bits
         self.order_bits = order_bits
+        self.counts_regions = counts_regions
         super().__init__({
             "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "drawing": In(1),
@@ -83,6 +89,8 @@ class ProcessingElementControl(wiring.Component):
             "busy_cycles": In(RESPONSE_VALUE_BITS),
             "responses": Out(stream.Signature(response_layout())),
             "idle": Out(1),
+            **({"counts_start": Out(1), "counts_done": In(1),
+                "counts": In(stream.Signature(RESPONSE_VALUE_BITS))} if counts_regions else {}),
         })
 
     @property
@@ -107,6 +115,10 @@ class ProcessingElementControl(wiring.Component):
                         m.next = "READ_BACK"
                     with m.Case(Operation.READ_COUNTERS):
                         m.next = "REPORT_FRAGMENTS"
+                    if self.counts_regions:
+                        with m.Case(Operation.READ_REGIONS):
+                            m.d.comb += self.counts_start.eq(1)
+                            m.next = "REPORT_REGIONS"
                     with m.Default():  # a newer controller's operation: not for this card
                         m.d.comb += operations.ready.eq(1)
             with m.State("SURVEY"):
@@ -130,6 +142,16 @@ class ProcessingElementControl(wiring.Component):
                         m.d.comb += operations.ready.eq(following == "DRAW")
                         m.next = following
 
+            if self.counts_regions:
+                with m.State("REPORT_REGIONS"):
+                    m.d.comb += [
+                        self.responses.valid.eq(self.counts.valid),
+                        self.counts.ready.eq(self.responses.ready),
+                    ]
+                    with m.If(self.counts_done):
+                        m.d.comb += operations.ready.eq(1)
+                        m.next = "DRAW"
+
         # Whoever has nothing to say says 0, so that an or of all is enough, here and in the link.
         units = Signal.like(self.first)
         m.d.comb += units.eq(self.end - self.first)
@@ -141,6 +163,8 @@ class ProcessingElementControl(wiring.Component):
             ResponseKind.FRAGMENTS: (state.ongoing("REPORT_FRAGMENTS"), self.fragments),
             ResponseKind.BUSY: (state.ongoing("REPORT_BUSY"), self.busy_cycles),
         }
+        if self.counts_regions:
+            reports[ResponseKind.REGION_COUNT] = self.counts.valid, self.counts.payload
         kind_bits = max(reports).bit_length()  # other boards say greater ones
         kinds = [Mux(now, C(kind, kind_bits), 0) for kind, (now, _) in reports.items()]
         values = [Mux(now, value, 0) for now, value in reports.values()]

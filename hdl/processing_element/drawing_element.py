@@ -14,6 +14,7 @@ from ..observer import ElementActivity
 from ..rasteriser.fragment_stepper import FragmentStepper
 from ..rasteriser.interpolator import Interpolator
 from ..rasteriser.triangle_spans import TriangleSpans
+from ..regions.region_spans import RegionSpans
 from .broadcast_queue import BroadcastQueue
 
 __all__ = ["DrawingElement"]
@@ -27,6 +28,8 @@ class DrawingElement(wiring.Component):
     ::
 
         broadcast ─▶ queue ─▶ TriangleSpans ─▶ FIFO ─▶ FragmentStepper ─▶ Interpolator ─▶
+
+    Where regions are dealt out ``RegionSpans`` are in the place of ``TriangleSpans``.
 
     A subclass adds what takes them, and a ``_control`` that does the operations: it has the members
     ``drawing``, ``frame_start``, ``fragments``, ``busy_cycles``, ``responses`` and ``idle`` of
@@ -44,12 +47,13 @@ class DrawingElement(wiring.Component):
                  configuration: MachineConfiguration):
         self.configuration = configuration
         self._queue = BroadcastQueue(configuration=configuration)
-        self._rasteriser = TriangleSpans(configuration=configuration)
+        dealt = configuration.regions is not None
+        self._rasteriser = (RegionSpans if dealt else TriangleSpans)(configuration=configuration)
         self._spans = fifo.SyncFIFO(width=span_layout(configuration).size, depth=SPANS_WAITING)
         self._stepper = FragmentStepper(configuration=configuration)
         self._interpolator = Interpolator(configuration=configuration)
         self._link = ResponseLink()
-        self._picture = PixelAddress(configuration=configuration)
+        self._picture = None if dealt else PixelAddress(configuration=configuration)
         super().__init__({
             **signature,
             **({"activity": wiring.Out(ACTIVITY_BITS)} if configuration.observe else {}),
@@ -70,9 +74,9 @@ class DrawingElement(wiring.Component):
             queue.strobe.eq(broadcast.strobe),
             queue.packet.eq(broadcast.packet),
             broadcast.ready.eq(queue.ready),
-            queue.lattice.eq(rasteriser.lattice),
-            queue.whole.eq(rasteriser.whole),
         ]
+        if self.configuration.regions is None:
+            m.d.comb += [queue.lattice.eq(rasteriser.lattice), queue.whole.eq(rasteriser.whole)]
         wiring.connect(m, queue.operations, self._control.operations)
 
     def _connect_drawing(self, m, pipeline, *further_on):

@@ -7,9 +7,11 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.queues import depth_lanes
 from ..backplane.connectors import BroadcastLines, Connector, memory_bus_bits
+from ..backplane.region_lines import RegionLines
 from ..depth_test.one_port import OnePortDepthTest
 from ..depth_test.two_ports import TwoPortDepthTest
 from ..rasteriser.interpolator import fragment_layout
+from ..regions.region_counts import RegionCounts
 from ..wires import wires
 from .control import ProcessingElementControl
 from .depth_read_back import DepthReadBack
@@ -19,6 +21,11 @@ from .merge_input import MergeInput
 from .survey import Survey
 
 __all__ = ["ProcessingElement"]
+
+
+def counts_regions(configuration: MachineConfiguration) -> bool:
+    """Regions are dealt out by what they cost."""
+    return configuration.regions is not None and configuration.balance != "static"
 
 
 class ProcessingElement(DrawingElement):
@@ -52,6 +59,8 @@ class ProcessingElement(DrawingElement):
     merge: In(stream of fragment_layout)
         What its node receives, only where nodes merge in a tree; nothing is drawn then
         (``MergeInput``).
+    regions: In(RegionLines)
+        Which regions are its own, only where they are dealt out.
     activity: Out(4)
         What it does in this clock; only where the configuration says ``observe``.
     """
@@ -62,11 +71,14 @@ class ProcessingElement(DrawingElement):
                            if configuration.memory_ports == 1 else TwoPortDepthTest(**bits))
         self._control = ProcessingElementControl(id_bits=configuration.id_bits,
                                                  depth_bits=configuration.rank_bits,
-                                                 order_bits=configuration.order_bits)
+                                                 order_bits=configuration.order_bits,
+                                                 counts_regions=counts_regions(configuration))
         self._survey = Survey(**bits)
         self._read_back = DepthReadBack(**bits)
         self._selector = MemoryBusSelector(**bits)
         self._merge = MergeInput(**bits) if configuration.sends_drawn else None
+        self._counts = (RegionCounts(configuration=configuration)
+                        if counts_regions(configuration) else None)
         super().__init__({
             "left": In(Connector(configuration)),
             "right": Out(Connector(configuration)),
@@ -74,6 +86,8 @@ class ProcessingElement(DrawingElement):
             "broadcast": In(BroadcastLines(configuration)),
             **({"merge": In(stream.Signature(fragment_layout(**bits)))}
                if self._merge is not None else {}),
+            **({} if configuration.regions is None else
+               {"regions": In(RegionLines(configuration))}),
         }, configuration=configuration)
 
     @property
@@ -87,7 +101,8 @@ class ProcessingElement(DrawingElement):
         m.submodules.survey = self._survey
         m.submodules.read_back = self._read_back
         m.submodules.link = self._link
-        m.submodules.picture = self._picture
+        if self._picture is not None:
+            m.submodules.picture = self._picture
         self._connect_broadcast(wires(m, "operation_wires"), self.broadcast)
         drawing = wires(m, "drawing_wires")
         self._connect_drawing(m, drawing, self.depth_test.busy)
@@ -96,6 +111,10 @@ class ProcessingElement(DrawingElement):
         else:
             self._connect_merge(m, drawing, self._merge)
         self._connect_domain(wires(m, "domain_wires"))
+        if self.configuration.regions is not None:
+            self._connect_regions(wires(m, "region_wires"))
+        if self._counts is not None:
+            m.submodules.counts = self._counts
         self._connect_services(wires(m, "service_wires"))
         m.submodules.selector = self._selector
         self._connect_memory_bus(wires(m, "line_wires"))
@@ -136,12 +155,35 @@ class ProcessingElement(DrawingElement):
         rasteriser, interpolator, picture = self._rasteriser, self._interpolator, self._picture
         survey, read_back, control = self._survey, self._read_back, self._control
         first, end = self.left.id, survey.end
-        m.d.comb += [self.right.id.eq(first), picture.total.eq(self.total),
-                     rasteriser.width.eq(picture.width)]
-        m.d.comb += [part.total.eq(self.total) for part in (rasteriser, interpolator, survey)]
-        m.d.comb += [part.first.eq(first) for part in (rasteriser, survey, read_back, control)]
-        m.d.comb += [part.end.eq(end) for part in (rasteriser, read_back, control)]
-        m.d.comb += read_back.last_word.eq(picture.last_word)
+        m.d.comb += self.right.id.eq(first)
+        if picture is None:
+            walkers, drawers = (), ()
+            last_word = self.configuration.words - 1
+        else:
+            m.d.comb += [picture.total.eq(self.total), rasteriser.width.eq(picture.width)]
+            walkers, drawers = (rasteriser,), (rasteriser, interpolator)
+            last_word = picture.last_word
+        m.d.comb += [part.total.eq(self.total) for part in (*drawers, survey)]
+        m.d.comb += [part.first.eq(first) for part in (*walkers, survey, read_back, control)]
+        m.d.comb += [part.end.eq(end) for part in (*walkers, read_back, control)]
+        m.d.comb += read_back.last_word.eq(last_word)
+
+    def _connect_regions(self, m):
+        """The tables, its number in them, and what it counts of its own."""
+        queue, rasteriser = self._queue, self._rasteriser
+        wiring.connect(m, wiring.flipped(self.regions), queue.regions, rasteriser.regions)
+        element = self.left.id >> self.configuration.share_bits
+        m.d.comb += [part.element.eq(element)
+                     for part in (queue, rasteriser, self._interpolator)]
+        counts, control = self._counts, self._control
+        if counts is not None:
+            m.d.comb += [
+                counts.row.eq(rasteriser.row),
+                counts.clear.eq(control.frame_start),
+                counts.start.eq(control.counts_start),
+                control.counts_done.eq(counts.done),
+            ]
+            wiring.connect(m, counts.counts, control.counts)
 
     def _connect_services(self, m):
         """Survey and read-back, and whether one of them has the memory bus."""

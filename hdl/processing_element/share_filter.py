@@ -7,7 +7,8 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In
 
 from ...golden.specification.configuration import MachineConfiguration
-from ..mapping.lattice import first_owned, lattice_layout, rows_mask
+from ..backplane.words import row_shape
+from ..mapping.lattice import first_owned, lattice_layout, next_owned, rows_mask
 
 __all__ = ["Share", "ShareFilter"]
 
@@ -74,3 +75,13 @@ class ShareFilter:
             in_columns.eq(first_column < triangle.right),
         ]
         return Share(first_row, ~inputs.whole | (in_rows & in_columns))
+
+    def known(self, m: Module, share: Share, kept: data.View, inputs) -> Value:
+        """What goes with the outline ``kept`` into the queue, as in ``walked_outline_layout``:
+        ``latency`` clocks after the ``share`` was found of it."""
+        kept_row = Signal(row_shape(self.configuration), name="kept_row", reset_less=True)
+        second_row = Signal(row_shape(self.configuration), name="second_row", reset_less=True)
+        m.d.sync += kept_row.eq(share.first_row)
+        m.d.comb += second_row.eq(next_owned(kept_row, inputs.lattice.y_mask,
+                                             self.configuration.square_bits))
+        return Cat(kept_row, second_row, second_row >= kept.bottom)

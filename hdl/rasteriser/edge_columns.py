@@ -7,7 +7,6 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import MachineConfiguration
 from ..arithmetic.delay import delayed
 from ..arithmetic.limb_products import limb_products, side_by_side
-from ..mapping.lattice import lattice_layout
 from .triangle_rows import row_layout
 
 __all__ = ["EdgeColumns", "extent_layout"]
@@ -21,9 +20,14 @@ def extent_layout(configuration: MachineConfiguration) -> data.StructLayout:
     return data.StructLayout({
         "first": configuration.x_bits,
         "beyond": configuration.x_bits,
-        **{name: row.members[name] for name in ("y", "rows", "left", "none", "last")},
-        "lattice": lattice_layout(configuration),
+        **{name: row.members[name] for name in _passed_on(configuration)},
     })
+
+
+def _passed_on(configuration: MachineConfiguration) -> tuple[str, ...]:
+    """Fields of a row that say nothing of its ends."""
+    owned = "lattice" if configuration.regions is None else "region"
+    return "y", "rows", "left", "none", "last", owned
 
 
 class EdgeColumns(wiring.Component):
@@ -74,7 +78,7 @@ class EdgeColumns(wiring.Component):
         with m.If(move):
             m.d.sync += stages.eq(Cat(self.rows.valid, stages))
 
-        for name in ("y", "rows", "left", "none", "last", "lattice"):
+        for name in _passed_on(self.configuration):
             value = delayed(m, row[name], self.latency - 1, name, enable=move)
             with m.If(move):
                 m.d.sync += extent[name].eq(value)

@@ -17,6 +17,7 @@ def pixel_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``x_steps``, ``y_steps``  columns and rows from the triangle's origin to it
     ``none``                  no pixel at all: the triangle has no more
     ``last``                  nothing of the triangle follows
+    ``slot``                  where its region lies; only where regions are dealt out
     """
     return data.StructLayout({
         "x": unsigned(configuration.x_bits),
@@ -25,6 +26,7 @@ def pixel_layout(configuration: MachineConfiguration) -> data.StructLayout:
         "y_steps": range(configuration.height),
         "none": 1,
         "last": 1,
+        **({} if configuration.regions is None else {"slot": configuration.table_bits}),
     })
 
 
@@ -63,7 +65,8 @@ class FragmentStepper(wiring.Component):
         holding = Signal()
         pixel = self.pixels.payload
         move = ~self.pixels.valid | self.pixels.ready
-        following = span.x + span.stride
+        dealt = self.configuration.regions is not None
+        following = span.x + (1 if dealt else span.stride)
         ends = span.none | (following >= span.end)
         m.d.comb += [
             self.spans.ready.eq(~holding | (move & ends)),
@@ -80,6 +83,8 @@ class FragmentStepper(wiring.Component):
                 pixel.last.eq(span.last & ends),
                 span.x.eq(following),
             ]
+            if dealt:
+                m.d.sync += pixel.slot.eq(span.slot)
         with m.If(self.spans.ready):
             m.d.sync += [span.eq(self.spans.payload), holding.eq(self.spans.valid)]
         return m

@@ -13,6 +13,7 @@ from ..arithmetic.narrowing import floor_shift, saturate, to_signed
 from ..backplane.connectors import memory_bus_bits
 from ..backplane.words import planes_layout
 from ..mapping.interlace import PixelAddress
+from ..mapping.region_address import RegionAddress
 from .fragment_stepper import pixel_layout
 
 __all__ = ["Interpolator", "fragment_layout"]
@@ -47,6 +48,8 @@ class Interpolator(wiring.Component):
     Members
     -------
     total: In(id_bits)
+        Number of memory units; where regions are dealt out, ``element: In(element_bits)`` instead,
+        the processing element's number.
     pixels: In(stream of pixel_layout)
         Those with ``none`` go no further.
     planes: In(stream of planes_layout)
@@ -67,7 +70,8 @@ class Interpolator(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         super().__init__({
-            "total": In(configuration.id_bits),
+            **({"total": In(configuration.id_bits)} if configuration.regions is None
+               else {"element": In(configuration.element_bits)}),
             "pixels": In(stream.Signature(pixel_layout(configuration))),
             "planes": In(stream.Signature(planes_layout(configuration))),
             "fragments": Out(stream.Signature(
@@ -97,13 +101,17 @@ class Interpolator(wiring.Component):
         with m.If(move):
             m.d.sync += stages.eq(Cat(self.pixels.valid & ~pixel.none, stages))
 
-        m.submodules.address = address = PixelAddress(configuration=configuration)
+        dealt = configuration.regions is not None
+        m.submodules.address = address = (RegionAddress if dealt else PixelAddress)(
+            configuration=configuration)
         sums = self.latency - 1
         m.d.comb += [
-            address.total.eq(self.total),
+            address.element.eq(self.element) if dealt else address.total.eq(self.total),
             address.x.eq(delayed(m, pixel.x, sums, "x", enable=move)),
             address.y.eq(delayed(m, pixel.y, sums, "y", enable=move)),
         ]
+        if dealt:
+            m.d.comb += address.slot.eq(delayed(m, pixel.slot, sums, "slot", enable=move))
         depth = self._floored(self._value(m, planes.depth, pixel, move, "depth"),
                               configuration.depth_bits, configuration.depth_background - 1)
         if configuration.shading == "flat":

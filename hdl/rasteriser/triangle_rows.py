@@ -8,6 +8,7 @@ from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.words import row_shape, struct_layout, walked_outline_layout
 from ..mapping.lattice import LatticeBlock, first_owned, lattice_layout, next_owned
+from ..mapping.region_address import visited_layout
 
 __all__ = ["TriangleRows", "row_layout"]
 
@@ -20,7 +21,7 @@ def row_layout(configuration: MachineConfiguration) -> data.StructLayout:
     ``short_rows``    rows from the first one of its short edge to it
     ``long_edge_left``, ``long``, ``short``  the edges that bound it
     ``left``          the triangle's first column, from which interpolants count
-    ``lattice``       the columns that are owned
+    ``lattice``       the columns that are owned; where regions are dealt out, ``region`` instead
     ``none``          no row at all: the triangle has none here
     ``last``          nothing of the triangle follows
     """
@@ -33,7 +34,8 @@ def row_layout(configuration: MachineConfiguration) -> data.StructLayout:
         "long": edge,
         "short": edge,
         "left": configuration.x_bits,
-        "lattice": lattice_layout(configuration),
+        **({"lattice": lattice_layout(configuration)} if configuration.regions is None
+           else {"region": visited_layout(configuration)}),
         "none": 1,
         "last": 1,
     })

@@ -53,7 +53,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
     """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
 
     Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
-    ``ports``, ``number_formats``, ``timing``, ``merging``, ``commands``, ``memories``.
+    ``ports``, ``number_formats``, ``timing``, ``merging``, ``regions``, ``commands``, ``memories``.
     """
     top = name or "machine"
     modules = _modules(verilog)
@@ -70,6 +70,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
         "timing": {part: _inspected(COMPONENTS[part](configuration), stated_timing)
                    for part in timed},
         "merging": _merging(configuration),
+        "regions": _regions(configuration),
         "commands": _command_words(configuration),
         "memories": memories(verilog, top),
     }
@@ -120,6 +121,9 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
           [number("round", c.round_bits, "round in which a node drew a pixel, beside its depth")]),
         *([] if not (c.merges_directly and c.order_bits) else
           [number("drawn_by", c.node_order_bits, "node that drew a pixel, below its round")]),
+        *([] if c.regions is None else
+          [number("element", c.element_bits, "number of a processing element, or one more"),
+           number("slot", c.table_bits, "place of a region in its processing element")]),
     ]
 
 
@@ -144,6 +148,25 @@ def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
     }
 
 
+def _regions(configuration: MachineConfiguration) -> dict[str, Any] | None:
+    """How regions of the screen are dealt out; None where pixels are interlaced."""
+    if configuration.regions is None:
+        return None
+    regions = configuration.dealt_regions
+    return {
+        "columns": regions.columns,
+        "rows": regions.rows,
+        "region_width": 1 << regions.x_bits,
+        "region_height": 1 << regions.y_bits,
+        "slots": configuration.slots,
+        "words_of_a_slot": 1 << configuration.slot_bits,
+        "balance": configuration.balance,
+        "balancer": configuration.balancer,
+        "at_first": "the processing element of a region is its number, row by row, modulo theirs",
+        "explained_in": "docs/regions.md",
+    }
+
+
 def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
     bodies = {
         commands.Opcode.FRAME_START: commands.frame_start_layout(),
@@ -153,6 +176,8 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
             commands.triangle_layout(configuration) if configuration.setup == "hardware"
             else commands.prepared_triangle_layout(configuration)),
     }
+    if configuration.regions is not None:
+        bodies[commands.Opcode.REGION] = commands.region_layout(configuration)
     return {
         "version": commands.VERSION,
         "explained_in": "docs/command-words.md",

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
 from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.engine import Engine
 from ..frames.setup_timing import setup_timing
@@ -95,7 +96,7 @@ def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> 
     """How often the list must be repeated, so that every unit is scanned about as often."""
     if prediction.binding != "busiest port":
         return 1
-    rows = max(_LEAST_ROWS, 2 * len(scan_shares(configuration)))
+    rows = max(_LEAST_ROWS, 2 * len(scan_shares(organisation_of(configuration))))
     return math.ceil(rows * clocks_per_row(configuration) / prediction.bound)
 
 

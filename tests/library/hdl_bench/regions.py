@@ -1,0 +1,167 @@
+"""Machines whose regions are dealt out, the lines that deal them, and visits by the definition."""
+
+import random
+from dataclasses import dataclass
+
+import numpy as np
+
+from cardcage.golden.organisations.region_table import slots_of
+
+from .bench import Agent
+from .pictures import prepare, prepared_values, small_machine
+
+#: Cards, picture, columns and rows of regions: squares, strips, one row or column at the edge.
+MACHINES = {
+    "squares": ("3x(PM)", (32, 32), (8, 8)),
+    "wide": ("2x(PMM)", (37, 19), (5, 10)),
+    "columns": ("3x(PM)", (24, 20), (12, 1)),
+    "rows": ("4x(PM)", (20, 24), (1, 12)),
+    "few": ("2x(PMMMM)", (16, 9), (2, 2)),
+}
+
+
+def region_machine(name, **changes):
+    cards, size, regions = MACHINES[name]
+    return small_machine(cards, *size, regions=regions, **changes)
+
+
+def random_table(configuration, seed):
+    """int64 (regions,): elements in any order, none with more regions than it has slots."""
+    source = random.Random(f"table {seed}")
+    places = list(range(configuration.processing_elements)) * configuration.slots
+    source.shuffle(places)
+    return np.array(places[:configuration.dealt_regions.count])
+
+
+class Deal(Agent):
+    """Writes ``tables`` one after the other, each into the bank that is not in use and then used.
+
+    ``lines`` are those of a component.  Agents that need a table wait for ``clocks``.
+    """
+
+    def __init__(self, lines, configuration, tables, element=None, number=0):
+        self._lines, self._element, self._number = lines, element, number
+        columns = configuration.dealt_regions.columns
+        self._words = []
+        for bank, table in enumerate(tables):
+            slots = slots_of(table)
+            self._words += [
+                {"valid": 1, "bank": (bank + 1) & 1, "column": region % columns,
+                 "row": region // columns, "element": int(element), "slot": int(slots[region]),
+                 "table": bank & 1} for region, element in enumerate(table)]
+            self._words += [{"valid": 0, "table": (bank + 1) & 1}]
+        self.clocks = len(self._words)
+        self._clock = 0
+
+    @property
+    def finished(self):
+        return self._clock >= self.clocks
+
+    def drive(self, ctx):
+        if self._element is not None:
+            ctx.set(self._element, self._number)
+        if self._clock < self.clocks:
+            for name, value in self._words[self._clock].items():
+                port = getattr(self._lines, name)
+                if len(port):
+                    ctx.set(port, value)
+        self._clock += 1
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A triangle in a region: column, row and slot of this, and (y, first, beyond) of each row,
+    the two columns cut to the region."""
+
+    column: int
+    row: int
+    slot: int
+    rows: tuple[tuple[int, int, int], ...]
+
+    @property
+    def pixels(self):
+        return sum(max(0, beyond - first) for _, first, beyond in self.rows)
+
+
+def edge_column(edges, index, row):
+    """Of an edge of ``golden.reference.triangle_setup``, so many rows below its first."""
+    column, remainder, column_step, remainder_step, denominator = (
+        int(getattr(edges, name)[index]) for name in (
+            "column", "remainder", "column_step", "remainder_step", "denominator"))
+    return ((column + row * column_step) * denominator + remainder
+            + row * remainder_step) // denominator
+
+
+def row_extent(prepared, index, y, width):
+    """Columns from the first up to, without, the last, held to the picture."""
+    top, middle = int(prepared.top[index]), int(prepared.middle[index])
+    short = (edge_column(prepared.upper, index, y - top) if y < middle
+             else edge_column(prepared.lower, index, y - middle))
+    columns = [edge_column(prepared.long, index, y - top), short]
+    if not prepared.long_edge_left[index]:
+        columns.reverse()
+    return [min(max(column, 0), width) for column in columns]
+
+
+class Dealt:
+    """What the triangles of a list are to an element, by a table."""
+
+    def __init__(self, configuration, table, element, display_list):
+        self.configuration, self.table, self.element = configuration, table, element
+        self.regions = configuration.dealt_regions
+        self.slots = slots_of(table)
+        self.prepared = prepare(configuration, display_list)
+        self.values = prepared_values(configuration, self.prepared)
+        self.boxes = [self._box(value) for value in self.values]
+
+    def _box(self, value):
+        x, y = self.regions.x_bits, self.regions.y_bits
+        return (value["left"] >> x, value["right"] - 1 >> x,
+                value["top"] >> y, value["bottom"] - 1 >> y)
+
+    def large(self, index):
+        left, right, top, bottom = self.boxes[index]
+        return right - left > 1 or bottom - top > 1
+
+    def own(self, column, row):
+        return self.table[row * self.regions.columns + column] == self.element
+
+    def own_bits(self, index):
+        """Of the box's at most 2 × 2 regions."""
+        left, right, top, bottom = self.boxes[index]
+        return sum(self.own(left + x, top + y) << (2 * y + x)
+                   for y in range(bottom - top + 1) for x in range(right - left + 1))
+
+    def kept(self):
+        """Indices of those that the filter keeps."""
+        return [index for index in range(len(self.values))
+                if self.large(index) or self.own_bits(index)]
+
+    def outline(self, index):
+        """As the queue gives it to the walker."""
+        value = {name: field for name, field in self.values[index].items() if name != "planes"}
+        large = self.large(index)
+        return value | {"own": 0 if large else int(self.own_bits(index)), "large": large}
+
+    def band(self, index, row):
+        """Rows of the triangle's box in a row of regions."""
+        value, bits = self.values[index], self.regions.y_bits
+        return range(max(value["top"], row << bits), min(value["bottom"], row + 1 << bits))
+
+    def visits(self, index):
+        left, right, top, bottom = self.boxes[index]
+        width, bits = self.configuration.width, self.regions.x_bits
+        found = []
+        for row in range(top, bottom + 1):
+            extents = [(y, *row_extent(self.prepared, index, y, width))
+                       for y in self.band(index, row)]
+            least = min(first for _, first, _ in extents)
+            most = max(beyond for *_, beyond in extents)
+            for column in range(left, right + 1):
+                begin, end = column << bits, column + 1 << bits
+                meets = least < most and begin < most and least < end
+                if self.own(column, row) and (meets or not self.large(index)):
+                    slot = int(self.slots[row * self.regions.columns + column])
+                    found.append(Visit(column, row, slot, tuple(
+                        (y, max(first, begin), min(beyond, end)) for y, first, beyond in extents)))
+        return found
