@@ -15,6 +15,7 @@ from ...reports.page import chart_style, svg_element
 from .dealing import CLOCKS, LAST, SCATTERED, STATIC, THIS, TRIANGLES
 from .frame_time import RATIOS as TIMED_RATIOS
 from .frame_time import relative_times
+from .in_rtl import MEASURED, Point
 from .model_dealing import ModelDealing
 from .overlap import SIDES, Overlap, by_regions
 from .screen_grids import PROCESSORS, RATIOS
@@ -31,53 +32,59 @@ PANELS = {
 }
 
 
-def figure_4(model: ModelDealing) -> str:
-    """An ``<svg>`` element: utilisation against processors, a curve for each ratio."""
+POINT_COLOR = "#c0392b"
+
+
+def figure_4(model: ModelDealing, points: Sequence[Point] = ()) -> str:
+    """An ``<svg>`` element: utilisation against processors, a curve for each ratio; ``points`` were
+    measured in RTL."""
     with chart_style():
-        return svg_element(_figure_4(model), f"{model.model.name}: utilisation against processors, "
-                           "a curve for each granularity ratio")
+        figure = Figure(figsize=(10.5, 3.7), layout="constrained")
+        _utilisation_panels(figure.subplots(1, len(PANELS), sharey=True), model, points)
+        _legend(figure, bool(points))
+        return svg_element(figure, f"{model.model.name}: utilisation against processors, a curve "
+                           "for each granularity ratio")
 
 
 def save_figure_4(models: Sequence[ModelDealing], path: Path) -> None:
     """The same of all models, for a page that shows pictures only."""
     figure = Figure(figsize=(10.5, 3.3 * len(models) + 0.4), layout="constrained")
-    rows = figure.subfigures(len(models), 1, squeeze=False)[:, 0]
-    for row, model in zip(rows, models, strict=True):
-        panels = row.subplots(1, len(PANELS), sharey=True)
-        _utilisation_panels(panels, model)
-        panels[0].set_ylabel(f"{model.model.name}: utilisation")
-    _legend(figure)
+    panels = figure.subplots(len(models), len(PANELS), squeeze=False, sharey=True)
+    for row, model in zip(panels, models, strict=True):
+        _utilisation_panels(row, model, ())
+    _legend(figure, False)
     figure.savefig(path, dpi=100, metadata={"Software": None})
 
 
-def _figure_4(model: ModelDealing) -> Figure:
-    figure = Figure(figsize=(10.5, 3.7), layout="constrained")
-    panels = figure.subplots(1, len(PANELS), sharey=True)
-    _utilisation_panels(panels, model)
-    panels[0].set_ylabel("utilisation")
-    _legend(figure)
-    return figure
-
-
-def _utilisation_panels(panels: Sequence[Axes], model: ModelDealing) -> None:
+def _utilisation_panels(panels: Sequence[Axes], model: ModelDealing, points: Sequence[Point]
+                        ) -> None:
+    panels[0].set_ylabel(f"{model.model.name}: utilisation")
     for axes, (title, curves) in zip(panels, PANELS.items(), strict=True):
         for ratio in RATIOS:
             for how, style in curves.items():
                 axes.plot(_places(model.processors), model.curve(ratio, how), style,
                           color=COLORS[ratio], linewidth=1.4, marker="o", markersize=2.5)
+        for point in points:
+            for how in curves.keys() & MEASURED:
+                axes.plot(_places([point.processors]), [point.by(how)], "s", markersize=7,
+                          markerfacecolor="none", markeredgewidth=1.6, color=POINT_COLOR)
         axes.set_title(title, fontsize=10)
         axes.set_ylim(0, 1.02)
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
         _processors_axis(axes, model)
 
 
-def _legend(figure: Figure) -> None:
+def _legend(figure: Figure, measured: bool) -> None:
     lines = [Line2D([], [], color=color, label=f"{ratio}") for ratio, color in COLORS.items()]
     lines += [Line2D([], [], color="#888888", linestyle=style, label=label)
               for style, label in (("--", "this frame's counts"), ("-", "the last frame's"),
                                    (":", "static"), ("-.", "scattered"))]
+    if measured:
+        lines.append(Line2D([], [], color=POINT_COLOR, marker="s", markerfacecolor="none",
+                            linestyle="none", label="in RTL"))
     figure.legend(handles=lines, loc="outside lower center", ncols=len(lines), frameon=False,
-                  fontsize=9, title="regions a processor", title_fontsize=9)
+                  fontsize=9, title="regions a processor", title_fontsize=9, columnspacing=1.2,
+                  handlelength=1.7)
 
 
 def figure_5(models: Sequence[ModelDealing]) -> str:

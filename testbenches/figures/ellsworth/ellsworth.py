@@ -13,6 +13,7 @@ from ....golden.specification.errors import InputError
 from ...engines.choose_engine import AUTO, make_engine
 from ...support.processes import cores, in_processes
 from .dealing import DealingJob
+from .in_rtl import Point, PointJob, point_jobs
 from .model_dealing import ModelDealing, dealing_jobs, model_dealing
 from .models import FigureModel, Size, figure_models
 from .overlap import Overlap, OverlapJob, overlap_jobs
@@ -62,22 +63,27 @@ class EllsworthOptions:
 
     def jobs(self) -> list[Any]:
         """The longest first: no process is left alone with one at the end."""
-        dealing = [job for model in self.chosen() for job in dealing_jobs(model, self.size)]
-        return [*dealing[::-1], *overlap_jobs(self.size)]
+        models = self.chosen()
+        points = point_jobs(models, self.size, self.engine) if self.simulate else []
+        dealing = [job for model in models for job in dealing_jobs(model, self.size)]
+        return [*points, *dealing[::-1], *overlap_jobs(self.size)]
 
 
 @dataclass(frozen=True, eq=False)
 class Ellsworth:
+    """``points``: of the first model; none where nothing was simulated."""
+
     size: Size
     models: Sequence[ModelDealing]
     overlaps: Sequence[Overlap]
+    points: Sequence[Point]
     command_line: str | None
     wall_seconds: float
 
     @property
     def differences(self) -> list[str]:
         """A line each: what machines did otherwise than the golden models say."""
-        return []
+        return [line for point in self.points for line in point.differences]
 
 
 def redraw_ellsworth(options: EllsworthOptions, command_line: str | None = None,
@@ -102,4 +108,5 @@ def redraw_ellsworth(options: EllsworthOptions, command_line: str | None = None,
     return Ellsworth(
         options.size, models,
         [each for job, found in done if isinstance(job, OverlapJob) for each in found],
+        [found for job, found in done if isinstance(job, PointJob)][::-1],
         command_line, time.perf_counter() - began)

@@ -44,7 +44,11 @@ def ellsworth_facts(found: Ellsworth) -> dict[str, Any]:
     ``cures``      name, needs, gain (of utilisation, the mean of all), utilisation: of each model
                    by processors
     ``best_cure`` ``best_cure_of_counters``  names
-    ``claims``     of all models together: claim, scenes (how many), failed (which), came_out
+    ``points``     measured in RTL: model, processors, columns, rows, ratio, utilisation and
+                   golden's of each frame, the first by the static table, the others by the last
+                   frame's clocks; differences, equal
+    ``claims``     of all models together: claim, scenes (how many), failed (which), came_out;
+                   ``overlap_claims`` of triangles of any scene
     ``findings``   lines
     ``wall_seconds``
     """
@@ -71,6 +75,8 @@ def ellsworth_facts(found: Ellsworth) -> dict[str, Any]:
                        for model in found.models}} for cure in CURES] if cured else [],
         "best_cure": best_cure(found.models).name if cured else None,
         "best_cure_of_counters": best_cure(found.models, "counters").name if cured else None,
+        "points": [asdict(point) | {"ratio": point.ratio, "equal": not point.differences}
+                   for point in found.points],
         "claims": [asdict(claim) | {"came_out": claim.came_out}
                    for claim in summary(found.models, found.overlaps)],
         "overlap_claims": [asdict(verdict) for verdict in claims_of_overlap(found.overlaps)],

@@ -11,6 +11,7 @@ from .dealing import CEILING, CLOCKS, CURE_RATIO, HOW, SCATTERED, STATIC, THIS
 from .ellsworth import Ellsworth
 from .findings import findings
 from .frame_time import COSTS, RATIOS, SENDING, best_ratio, best_where_sending_costs, mean_times
+from .in_rtl import Point
 from .model_dealing import ModelDealing
 from .overlap import REGIONS, SHAPE_SIDE, by_regions, by_shape
 
@@ -30,6 +31,8 @@ def headline(found: Ellsworth) -> list[str]:
 def tables(found: Ellsworth) -> list[TextTable]:
     """All that there are figures for."""
     made = [model_table(found), *(utilisation_table(model) for model in found.models)]
+    if found.points:
+        made.append(point_table(found.points))
     if any(model.cure_processors for model in found.models):
         made.append(cure_table(found.models))
     made.append(time_table(found.models))
@@ -60,6 +63,17 @@ def utilisation_table(model: ModelDealing) -> TextTable:
         ("regions a processor, table by", *(f"{each}" for each in model.processors)),
         tuple((f"{ratio}, {how}", *(f"{value:.2f}" for value in model.curve(ratio, how)))
               for ratio in SHOWN_RATIOS for how in HOW))
+
+
+def point_table(points: Sequence[Point]) -> TextTable:
+    frames = range(1, len(points[0].utilisation))
+    return TextTable(
+        f"measured in RTL, {points[0].model}: utilisation by the machines' own counts of clocks",
+        ("processors", "regions", "a processor", "static, frame 0",
+         *(f"last frame's clocks, frame {frame}" for frame in frames), "golden's"),
+        tuple((f"{point.processors}", f"{point.columns}x{point.rows}", f"{point.ratio:g}",
+               *(f"{value:.3f}" for value in point.utilisation),
+               "not equal" if point.differences else "equal") for point in points))
 
 
 def cure_table(models: Sequence[ModelDealing]) -> TextTable:

@@ -17,6 +17,7 @@ from .figure_tables import (
     cure_table,
     model_table,
     overlap_table,
+    point_table,
     shape_table,
     time_table,
     utilisation_table,
@@ -43,10 +44,10 @@ def ellsworth_page(found: Ellsworth, facts: dict[str, Any]) -> str:
         facts,
         warnings=[],
         verdicts=summary(found.models, overlaps),
-        points=[],
-        point_table=None,
-        scenes=[(model, figure_4(model), claims_of(model), utilisation_table(model))
-                for model in found.models],
+        point_table=point_table(found.points) if found.points else None,
+        scenes=[(model, figure_4(model, [point for point in found.points
+                                         if point.model == model.model.name]),
+                 claims_of(model), utilisation_table(model)) for model in found.models],
         model_table=model_table(found),
         cure_table=cure_table(found.models) if facts["cures"] else None,
         goes_on=GOES_ON,
