@@ -13,6 +13,7 @@ from ..golden.specification.card_order import (
     MERGE_CARDS,
     SNOOP_MERGE,
 )
+from ..golden.specification.commands import RESPONSE_VALUE_BITS
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
 from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
@@ -21,6 +22,10 @@ from .backplane.connectors import memory_bus_bits
 from .backplane.fragment_lines import unit_fragment_layout
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
+from .balancing.balancer import Balancer
+from .balancing.least_loaded import LeastLoaded
+from .balancing.merge_sorter import MergeSorter
+from .balancing.region_order import RegionOrder, region_shape
 from .controller.frame_tags import FrameTags
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
@@ -134,6 +139,18 @@ def _with_regions(configuration: MachineConfiguration) -> MachineConfiguration:
                    regions=(columns, rows))
 
 
+def _regions(configuration: MachineConfiguration) -> dict[str, int]:
+    """How many there are."""
+    regions = configuration.dealt_regions
+    return {"columns": regions.columns, "rows": regions.rows}
+
+
+def _packing(configuration: MachineConfiguration) -> dict[str, int]:
+    """What regions are packed into, by counts of how many bits."""
+    return {"elements": configuration.maximum_units >> configuration.share_bits,
+            "slots": configuration.slots, "count_bits": RESPONSE_VALUE_BITS}
+
+
 def _fragment(configuration: MachineConfiguration) -> data.StructLayout:
     return unit_fragment_layout(address_bits=configuration.address_bits,
                                 depth_bits=configuration.rank_bits)
@@ -147,6 +164,8 @@ def _depth_of_queues(configuration: MachineConfiguration) -> int:
 #: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     **{name: partial(_board, name) for name in BOARDS},
+    "balancer": partial(_dealt, lambda configuration: Balancer(
+        **_regions(configuration), **_packing(configuration))),
     "band_probes": partial(_dealt, BandProbes),
     "band_scan": partial(_dealt, BandScan),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
@@ -168,7 +187,12 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "interpolator": lambda c: Interpolator(configuration=c),
     "large_visits": partial(_dealt, LargeVisits),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
+    "least_loaded": partial(_dealt, lambda configuration: LeastLoaded(
+        label=region_shape(**_regions(configuration)), **_packing(configuration))),
     "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
+    "merge_sorter": partial(_dealt, lambda configuration: MergeSorter(
+        items=configuration.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
+        label=region_shape(**_regions(configuration)))),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
@@ -190,6 +214,8 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "region_address": partial(_dealt, RegionAddress),
     "region_clip": partial(_dealt, RegionClip),
     "region_counts": partial(_dealt, RegionCounts),
+    "region_order": partial(_dealt, lambda configuration: RegionOrder(
+        **_regions(configuration), **_packing(configuration))),
     "region_rows": partial(_dealt, RegionRows),
     "region_spans": partial(_dealt, RegionSpans),
     "region_visits": partial(_dealt, RegionVisits),

@@ -6,7 +6,13 @@ from operator import and_, or_
 
 from amaranth.hdl import *
 
-__all__ = ["connect_broadcast", "connect_pictures", "connect_scan", "connect_senders"]
+__all__ = [
+    "connect_broadcast",
+    "connect_pictures",
+    "connect_regions",
+    "connect_scan",
+    "connect_senders",
+]
 
 
 def connect_broadcast(part: Module, lines, receivers: Sequence) -> None:
@@ -31,6 +37,17 @@ def connect_pictures(part: Module, lines, units: Sequence, *, front=None) -> Non
                         for name in ("depth_tag", "initialise", "sweep")]
         part.d.comb += [tag.eq(source) for tag, source in zip(
             unit.pictures.color_tag, lines.color_tag, strict=True)]
+
+
+def connect_regions(part: Module, lines, receivers: Sequence, *, table=None) -> None:
+    """``RegionLines`` to each receiver's.
+
+    ``table``: the one in use there, in place of that of ``lines``.
+    """
+    for receiver in receivers:
+        part.d.comb += [getattr(receiver, name).eq(getattr(lines, name))
+                        for name in lines.signature.members if name != "table"]
+        part.d.comb += receiver.table.eq(lines.table if table is None else table)
 
 
 def connect_scan(part: Module, lines, units: Sequence) -> None:

@@ -18,7 +18,7 @@ from .controller.central_broadcast_controller import CentralBroadcastController
 from .direct.direct_element import DirectElement
 from .direct.direct_lines import connect_direct
 from .direct.direct_merge import DirectMerge
-from .lines_to_all import connect_broadcast, connect_pictures, connect_scan
+from .lines_to_all import connect_broadcast, connect_pictures, connect_regions, connect_scan
 from .memory_unit.memory_unit import MemoryUnit
 from .nodes.chain_merge import ChainMerge
 from .nodes.merge_card import MergeCard
@@ -61,7 +61,7 @@ class Machine(wiring.Component):
     """The card cage of figures 12 and 15: controller left, cards in order, scan generator.
 
     Only connections: the slots' connectors from left to right, the total units
-    back from the right end, broadcast, picture and scan lines to all, and the
+    back from the right end, broadcast, picture, region and scan lines to all, and the
     wired answers (ready, done and swept: and; video: or).
 
     Members
@@ -198,3 +198,9 @@ class Machine(wiring.Component):
         scan.d.comb += controller.scan_start.eq(generator.start)
         scan.d.comb += generator.background.eq(controller.background)
         connect_scan(scan, generator.scan, self.memory_units)
+        if self.configuration.regions is not None:
+            regions = wires(m, "region_wires")
+            connect_regions(regions, controller.regions,
+                            [element.regions for element in self.processing_elements])
+            connect_regions(regions, controller.regions, [generator.regions],
+                            table=controller.shown_table)

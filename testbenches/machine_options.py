@@ -22,6 +22,7 @@ from ..golden.specification.configuration import (
 )
 from ..golden.specification.errors import InputError
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
+from ..golden.specification.regions import Balance, Balancer
 
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
@@ -65,6 +66,12 @@ class MachineOptions:
                           or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
     ``list_words``        nodes have list memories of so many triangles
+    ``regions``           columns and rows of the regions of the screen that are dealt out to
+                          processing elements; None interlaces pixels
+    ``slots``             regions that each of them has room for
+    ``balance``           what is counted of a region, by which the next table is made:
+                          ``static`` nothing, ``triangles`` or ``clocks``
+    ``balancer``          who makes that table: ``host`` or ``hardware``
 
     How a mesh is looked at; a display list can be asked for none of it:
 
@@ -91,6 +98,10 @@ class MachineOptions:
     queue: Queue | None = None
     retain: bool | None = None
     list_words: int | None = None
+    regions: tuple[int, int] | None = None
+    slots: int | None = None
+    balance: Balance | None = None
+    balancer: Balancer | None = None
     view: tuple[float, float] | None = None
     zoom: float | None = None
     background: tuple[int, int, int] | None = None
@@ -113,6 +124,7 @@ class MachineOptions:
         if self.max_error is not None or self.fraction_bits == "exact":
             settled["fraction_bits"] = None  # in place of the preset's
         self._check_merging(settled["cards"])
+        self._check_regions()
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
         if self.setup is not None:
@@ -135,6 +147,13 @@ class MachineOptions:
         if self.queue is not None and merge != DIRECT_MERGE:
             raise InputError(f"--queue: {cards} has no direct merge; leave it out, or take one, as "
                              "in PPPPDMMMM")
+
+    def _check_regions(self) -> None:
+        """``InputError`` for what only regions that are dealt out can be asked."""
+        for name in ("slots", "balance", "balancer"):
+            if self.regions is None and getattr(self, name) is not None:
+                raise InputError(f"--{name}: is for regions that are dealt out; give --regions as "
+                                 "well, as in --regions 8x8")
 
     def for_plan(self) -> dict[str, Any]:
         """What is asked of ``plan`` besides a display list, which has its own size.
@@ -203,8 +222,9 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
 def option_words(options: MachineOptions) -> list[str]:
     """The options as words of a command line, those that were asked for."""
     asked = {field.name: getattr(options, field.name) for field in fields(MachineOptions)}
-    if asked["size"] is not None:
-        asked["size"] = "x".join(map(str, asked["size"]))
+    for name in ("size", "regions"):
+        if asked[name] is not None:
+            asked[name] = "x".join(map(str, asked[name]))
     for name in ("view", "light"):
         if asked[name] is not None:
             asked[name] = ",".join(f"{number:.17g}" for number in asked[name])

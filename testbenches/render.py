@@ -21,6 +21,7 @@ from .frames.node_counts import (
     node_figures,
     unit_differences,
 )
+from .frames.region_figures import region_figures
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
 from .frames.setup_timing import setup_timing
@@ -112,6 +113,9 @@ class RenderJob:
         if traffic is not None:  # no fault of the picture
             nodes = node_figures(configuration, display_list, simulation, traffic)
             warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
+        regions = region_figures(configuration, display_list, simulation)
+        if regions is not None:
+            warnings += regions.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
@@ -121,6 +125,7 @@ class RenderJob:
             warnings=tuple(warnings),
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
+            regions=regions,
         )
 
 

@@ -105,10 +105,12 @@ class FramesJob:
         return FramesRendering(frames, Rendering(
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,
-            warnings=(*self.warnings, *shown.simulation.notes),
+            warnings=(*self.warnings, *shown.simulation.notes, *(
+                f"picture {frame.number}: {line}" for frame in frames
+                if frame.regions is not None for line in frame.regions.differences)),
             wall_seconds=time.perf_counter() - self.began, report=report,
-            traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation)),
-            report)
+            traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation),
+            regions=shown.regions), report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

@@ -21,7 +21,8 @@ WINGS = {
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
-        "controller", "video", "nodes", "snooping", "direct", "machine", "components"),
+        "balancing", "controller", "video", "nodes", "snooping", "direct", "machine",
+        "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
         "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",
@@ -32,7 +33,8 @@ ORDER = list(WINGS)
 
 #: What ``hdl`` may import of ``golden``: the numbers and words that both must agree on.
 SHARED_WITH_HDL = {f"golden.specification.{name}" for name in (
-    "activity", "card_order", "commands", "configuration", "interlace", "queues", "ranges")}
+    "activity", "card_order", "commands", "configuration", "interlace", "queues", "ranges",
+    "regions")}
 
 MOST_FILES = 16
 MOST_LINES = 400

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..merging.direct import direct_traffic
+from ..organisations.dealt_regions import DealtRegions
 from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..reference.exact import depth_complexity
@@ -38,6 +39,7 @@ from .element_latencies import PIPELINE
 from .element_spans import lattice_spans
 from .node_work import share_of_node
 from .one_port_lanes import scan_share
+from .regions.region_spans import region_spans
 from .row_clocks import walks
 
 Float64 = NDArray[np.float64]
@@ -79,12 +81,16 @@ class CycleEstimate:
 
 
 def estimate_cycles(configuration: MachineConfiguration, display_list: DisplayList,
-                    retained: bool = False) -> CycleEstimate:
+                    retained: bool = False, table: Int64 | None = None) -> CycleEstimate:
     """How long ``configuration`` takes for ``display_list``; whole arrays, no loop over pixels.
 
-    ``retained``: the nodes draw it from their lists, all at the same time.
+    ``retained``: the nodes draw it from their lists, all at the same time.  ``table``: what regions
+    are dealt out by, int64 (regions,), or None for what a machine begins with.
     """
-    nodes = [_of_node(configuration, display_list, node) for node in range(configuration.nodes)]
+    organisation = organisation_of(configuration).dealt(table)
+    nodes = ([_of_regions(organisation, display_list)] if isinstance(organisation, DealtRegions)
+             else [_of_node(configuration, display_list, node)
+                   for node in range(configuration.nodes)])
     broadcast = [node.broadcast for node in nodes]
     return CycleEstimate(np.concatenate([node.draw for node in nodes]),
                          max(broadcast) if retained else sum(broadcast),
@@ -115,10 +121,7 @@ def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
     alone = np.array([block.units == 1 for block in blocks])
     alternating = np.array([block.alternating for block in blocks])
     elements = len(organisation.domains)
-    written, slots = 0.0, 0.0
-    if configuration.memory_ports == 1 and not configuration.merges_directly:
-        written = visible_share(depth_complexity(display_list, **shifts))
-        slots = scan_share(configuration, node)
+    written, slots = _of_ports(configuration, display_list, node)
     draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
     for spans in lattice_spans(triangles, blocks):
         count = spans.end - spans.begin
@@ -134,6 +137,37 @@ def _of_node(configuration: MachineConfiguration, display_list: DisplayList,
         draw += np.maximum(_together(walked), _together(drawn.reshape(count, elements))).sum(axis=0)
         fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
     return CycleEstimate(draw, len(triangles), fragments)
+
+
+def _of_regions(organisation: DealtRegions, display_list: DisplayList) -> CycleEstimate:
+    """Where regions are dealt out: the rows of all visits, and the fragments."""
+    configuration, elements = organisation.configuration, organisation.elements
+    triangles = Triangles.of(display_list, Grid.of(display_list))
+    written, slots = _of_ports(configuration, display_list)
+    alternating = organisation.inside.x_unit_bits > 0
+    draw, fragments = np.zeros(elements), np.zeros(elements, np.int64)
+    for spans in region_spans(triangles, organisation):
+        shape = spans.end - spans.begin, elements
+        waits = np.where(spans.units == 1, spans.length,
+                         0 if alternating else np.maximum(spans.length - FRAGMENTS_WAITING, 0))
+        clocks = (spans.length + written * waits) / (1 - slots)
+        places = spans.visit_triangle * elements + spans.visit_element
+        drawn = np.bincount(places[spans.visit], clocks, shape[0] * elements)
+        walked = np.bincount(places, spans.visit_rows, shape[0] * elements)
+        draw += np.maximum(_together(walked.reshape(shape)),
+                           _together(drawn.reshape(shape))).sum(axis=0)
+        fragments += np.bincount(spans.element, spans.length, elements).astype(np.int64)
+    return CycleEstimate(draw, len(triangles), fragments)
+
+
+def _of_ports(configuration: MachineConfiguration, display_list: DisplayList,
+              node: int = 0) -> tuple[float, float]:
+    """Of units with one port: writes per fragment, and the share of the scan; of others none."""
+    if configuration.memory_ports > 1 or configuration.merges_directly:
+        return 0.0, 0.0
+    shifts = organisation_of(configuration).resolution.shifts
+    return (visible_share(depth_complexity(display_list, **shifts)),
+            scan_share(configuration, node))
 
 
 def _wait(configuration: MachineConfiguration) -> float:

@@ -16,7 +16,7 @@ In a cage of nodes the elements of a node only get its own triangles.  The host 
 through one broadcast, which waits only for the queues of the node that is to get the next one;
 or each node has its share in a list, and all send theirs at the same time.  Elements without
 pixels of their own are followed clock by clock (``direct``): they wait for memory units, and so for
-one another.
+one another.  Where regions are dealt out a triangle is walked visit by visit (``regions``).
 
 Where units have one port each span is followed by itself, and its clocks are a model
 too: what reads, writes and the scan's slots come to on average.  The model does not know
@@ -31,6 +31,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.dealt_regions import DealtRegions
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
@@ -38,6 +39,7 @@ from .broadcast import ControllersBroadcast, ListBroadcasts, NodeQueues, SetUp, 
 from .direct.direct_work import DirectWork
 from .element_latencies import NEVER, PIPELINE, Pipeline
 from .node_work import NodeWork
+from .regions.region_work import RegionWork
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -90,18 +92,27 @@ class CyclePrediction:
 
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
                    pipeline: Pipeline = PIPELINE, after: DisplayList | None = None,
-                   setup: SetupTiming | None = None, retained: bool = False) -> CyclePrediction:
+                   setup: SetupTiming | None = None, retained: bool = False,
+                   table: Int64 | None = None, begin: int | None = None) -> CyclePrediction:
     """The clocks for ``display_list``.
 
     ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
     machine's own set-up, or None where the triangles come prepared; ``pipeline`` is that of the
-    machine.  ``retained``: the nodes draw it from their lists.  Precision does not matter to the
-    clocks.
+    machine.  ``retained``: the nodes draw it from their lists.  ``table``: what regions are dealt
+    out by, int64 (regions,), or None for what a machine begins with.  ``begin``: the first triangle
+    is taken, or the command to draw the lists, so many clocks after a scan began to show its first
+    line; None where nobody knows.  Only where elements share units of one port is it looked at:
+    then they are within 2 % of the machine, lists of a few scan lines included.  Precision does not
+    matter to the clocks.
     """
     if configuration.merges_directly:
-        return _predict_direct(configuration, display_list, pipeline, after, setup, retained)
-    works = [NodeWork(configuration, display_list, node, pipeline, after)
-             for node in range(configuration.nodes)]
+        return _predict_direct(configuration, display_list, pipeline, after, setup, retained,
+                               begin)
+    organisation = organisation_of(configuration).dealt(table)
+    works = ([RegionWork(organisation, display_list, pipeline, after)]
+             if isinstance(organisation, DealtRegions) else
+             [NodeWork(organisation, display_list, node, pipeline, after)
+              for node in range(configuration.nodes)])
     sent, nodes, _ = _sending_order(
         configuration, display_list, np.concatenate([work.primitive for work in works]), retained)
     broadcast = (ListBroadcasts() if retained else
@@ -126,9 +137,9 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
 
 def _predict_direct(configuration: MachineConfiguration, display_list: DisplayList,
                     pipeline: Pipeline, after: DisplayList | None, setup: SetupTiming | None,
-                    retained: bool) -> CyclePrediction:
+                    retained: bool, begin: int | None) -> CyclePrediction:
     """Where elements have no pixels of their own."""
-    work = DirectWork(configuration, display_list, pipeline, after)
+    work = DirectWork(configuration, display_list, pipeline, after, begin)
     sent, nodes, order = _sending_order(configuration, display_list, work.primitive, retained)
     drawn = work.drawn(nodes, None if setup is None else SetUp(setup, sent), retained)
     triangles = len(sent)

@@ -35,7 +35,9 @@ class LatticeSpans:
     ``row``       row of the picture
     ``length``    pixels
     ``squares``   squares of the lattice that they lie in; 1 where it is one of single pixels
-    ``x_offset`` ``x_bits`` ``y_bits``  of the block in this row
+    ``x_offset`` ``x_bits`` ``y_bits``  of the block in this row, in squares of
+                  ``2**square_bits`` pixels a side
+    ``units``     memory units that its block has
     ``source``    index of the whole span in ``whole``, the covered columns it is cut from
     ``rows``      int64 (end - begin, blocks): lattice rows of each triangle in each block
     ``met``       bool, alike: the triangle's bounding box holds a pixel of the block
@@ -53,10 +55,31 @@ class LatticeSpans:
     x_offset: Int64
     x_bits: Int64
     y_bits: Int64
+    square_bits: int
+    units: Int64
     source: Int64
     whole: Spans
     rows: Int64
     met: Bool
+
+    def counted(self, x: Int64, lane: Int64, weights: Bool | None) -> Int64:
+        """int64 (n, 2): how many fragments of each span are in each lane, or the sum of their
+        weights; ``x`` and ``lane`` of all fragments, triangles ascending, rows ascending, columns
+        ascending."""
+        # They come in the order of the whole spans and of the columns in each.
+        whole = np.repeat(np.arange(len(self.whole)), self.whole.length)
+        column = x >> self.square_bits
+        counts = np.zeros((len(self), 2), np.int64)
+        for bits in np.unique(self.x_bits).tolist():
+            key = ((whole << bits) | (column & ((1 << bits) - 1))) * 2 + lane
+            found = np.bincount(key, weights, len(self.whole) << bits + 1)
+            here = np.flatnonzero(self.x_bits == bits)
+            place = (self.source[here] << bits) | self.x_offset[here]
+            counts[here] = found.reshape(-1, 2)[place]
+        return counts
+
+    def __len__(self) -> int:
+        return len(self.length)
 
 
 def lattice_spans(triangles: Triangles, blocks: Sequence[ElementBlock],
@@ -85,7 +108,8 @@ def _before(position: Int64, offset: Int64 | int, bits: Int64 | int, square_bits
 def _cut(triangles: Triangles, blocks: Sequence[ElementBlock], begin: int, end: int,
          whole: Spans) -> LatticeSpans:
     facts = {name: np.array([getattr(block, name) for block in blocks], np.int64)
-             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits", "shifted")}
+             for name in ("element", "x_offset", "y_offset", "x_bits", "y_bits", "shifted",
+                          "units")}
     square_bits = blocks[0].square_bits
     left, right, top, bottom = (
         edge[begin:end, np.newaxis].astype(np.int64)
@@ -129,4 +153,4 @@ def _cut(triangles: Triangles, blocks: Sequence[ElementBlock], begin: int, end: 
     return LatticeSpans(
         begin, end, triangle, of_block["element"], number, step - above[triangle, number], row,
         length[order], squares[order], x_offset_of[order], of_block["x_bits"],
-        of_block["y_bits"], source, whole, rows, met)
+        of_block["y_bits"], square_bits, of_block["units"], source, whole, rows, met)

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation import Organisation
 from ..organisations.organisation_of import organisation_of
 from ..reference.coverage import Triangles
 from ..specification.configuration import MachineConfiguration
@@ -16,10 +17,10 @@ from ..specification.display_list import DisplayList
 from ..specification.sampling_grid import Grid
 from .broadcast import Element
 from .element_latencies import Pipeline
-from .element_spans import LatticeSpans, lattice_spans
+from .element_spans import lattice_spans
 from .one_port_element import OnePort
 from .port_accesses import PortAccesses
-from .row_clocks import Entries, entries_of
+from .row_clocks import Entries, WalkedSpans, entries_of
 from .two_port_element import TwoPorts
 
 Float64 = NDArray[np.float64]
@@ -41,7 +42,7 @@ class _Ports(Protocol):
     @property
     def bound(self) -> float: ...
 
-    def costs(self, entries: Entries, spans: LatticeSpans) -> Sequence[Any]:
+    def costs(self, entries: Entries, spans: WalkedSpans) -> Sequence[Any]:
         """The cost of each pair, as the pair's element takes it."""
 
 
@@ -56,27 +57,33 @@ class NodeWork:
     The list ``after`` was drawn before it, by all nodes.
     """
 
-    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList, node: int,
+    def __init__(self, organisation: Organisation, display_list: DisplayList, node: int,
                  pipeline: Pipeline, after: DisplayList | None = None) -> None:
-        organisation = organisation_of(configuration)
+        configuration = organisation.configuration
         own, listed = share_of_node(configuration, display_list, node)
         before = None if after is None else share_of_node(configuration, after, node)[1]
+        self._organisation = organisation.each[node]
         self._triangles = Triangles.of(listed, Grid.of(listed, **organisation.resolution.shifts))
         self.primitive = own[self._triangles.primitive]
         self._pipeline = pipeline
-        self._blocks = organisation.each[node].blocks
         self._ports: _Ports = (
-            OnePort(configuration, PortAccesses(configuration, listed, self._triangles, before,
-                                                node), pipeline, node)
-            if configuration.memory_ports == 1 else TwoPorts(configuration, pipeline, node))
-        self.elements = self._ports.elements
+            OnePort(organisation, PortAccesses(organisation, listed, self._triangles, before, node),
+                    pipeline, node)
+            if configuration.memory_ports == 1
+            else TwoPorts(len(self._organisation.domains), pipeline))
+        self.elements: Sequence[Element] = self._ports.elements
         self._bound = np.zeros((2, len(self.elements)))
+
+    def _walked(self) -> Iterator[tuple[Entries, WalkedSpans]]:
+        """Some triangles after others, and what leaves the walkers for them."""
+        blocks = self._organisation.blocks
+        for spans in lattice_spans(self._triangles, blocks):
+            yield entries_of(blocks, len(self.elements), spans, self._pipeline), spans
 
     def __iter__(self) -> Iterator[list[ElementWork]]:
         """Of each triangle, in order, what it costs those elements that keep it."""
         elements = len(self.elements)
-        for spans in lattice_spans(self._triangles, self._blocks):
-            entries = entries_of(self._blocks, elements, spans, self._pipeline)
+        for entries, spans in self._walked():
             self._bound += [np.bincount(entries.element, entries.walk, elements),
                             np.bincount(spans.element, spans.length, elements)]
             work = list(zip(entries.element.tolist(), entries.walk.tolist(),

@@ -11,13 +11,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..organisations.organisation_of import organisation_of
-from ..specification.configuration import MachineConfiguration
+from ..organisations.organisation import Organisation
 from .element_latencies import NEVER, Drawn, Pipeline
-from .element_spans import LatticeSpans
 from .one_port_lanes import ElementLanes, SpanAccesses, scan_shares
 from .port_accesses import PortAccesses
-from .row_clocks import Entries
+from .row_clocks import Entries, WalkedSpans
 
 #: What leaves the walker for a triangle, each with its ``Entries.offset``; None where it is no span
 #: but only the triangle's end.
@@ -27,21 +25,20 @@ OnePortCost = list[tuple[int, SpanAccesses | None]]
 class OnePort:
     """The ports of a node, one of each unit, and the ``elements`` before them."""
 
-    def __init__(self, configuration: MachineConfiguration, accesses: PortAccesses,
+    def __init__(self, organisation: Organisation, accesses: PortAccesses,
                  pipeline: Pipeline, node: int = 0) -> None:
         self._accesses = accesses
-        shares = scan_shares(configuration)
+        shares = scan_shares(organisation)
         self.elements = [
-            OnePortElement(ElementLanes(configuration, shares[:, element]), pipeline)
-            for element, domain in enumerate(organisation_of(configuration).domains)
-            if domain.node == node]
+            OnePortElement(ElementLanes(organisation.configuration, shares[:, element]), pipeline)
+            for element, domain in enumerate(organisation.domains) if domain.node == node]
 
     @property
     def bound(self) -> float:
         """Clocks that the busiest unit needs for the spans whose costs were asked for."""
         return self._accesses.bound
 
-    def costs(self, entries: Entries, spans: LatticeSpans) -> list[OnePortCost]:
+    def costs(self, entries: Entries, spans: WalkedSpans) -> list[OnePortCost]:
         """The cost of each pair, as the pair's element takes it; ``spans`` in drawing order."""
         # A span that crosses several squares is an entry in each.
         each: list[SpanAccesses] = (

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..organisations.organisation import Organisation
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
@@ -59,20 +60,20 @@ def scan_share(configuration: MachineConfiguration, node: int = 0) -> float:
     return _shown(configuration) / (clocks * organisation.units)
 
 
-def scan_shares(configuration: MachineConfiguration) -> Float64:
+def scan_shares(organisation: Organisation) -> Float64:
     """float64 (rows, elements, 2): the share of each lane's time that the scan takes while it
     shows that row of the picture; blanking of both kinds is spread over all rows.  The rows
     repeat.  Nodes that the scan does not read lose nothing."""
-    return _scan_shares(configuration, _shown(configuration))
+    return _scan_shares(organisation, _shown(organisation.configuration))
 
 
-def shown_scan_shares(configuration: MachineConfiguration) -> Float64:
+def shown_scan_shares(organisation: Organisation) -> Float64:
     """As ``scan_shares``, of the time in which pixels are shown: blanking has none of it."""
-    return _scan_shares(configuration, 1.0)
+    return _scan_shares(organisation, 1.0)
 
 
-def _scan_shares(configuration: MachineConfiguration, shown: float) -> Float64:
-    organisation = organisation_of(configuration)
+def _scan_shares(organisation: Organisation, shown: float) -> Float64:
+    configuration = organisation.configuration
     elements = len(organisation.domains)
     unit, group = organisation.scan_tile, organisation.scan_group
     rows, columns = unit.shape
@@ -80,10 +81,10 @@ def _scan_shares(configuration: MachineConfiguration, shown: float) -> Float64:
     lane = lane_of(configuration, unit)
     # A unit reads for a group of pixels at once, at its beginning.
     clocks = configuration.clocks_per_pixel * group << organisation.resolution.x_shift
-    read = np.zeros((rows, columns // group, elements + 1, 2))  # the last one has the orphans
+    read = np.zeros((rows, columns // group, elements + 1, 2), bool)  # the last: orphans
     for node, owner in enumerate(organisation.owners):
         if organisation.is_scanned(node):
-            read[y, x // group, owner[unit], lane] = 1
+            read[y, x // group, owner[unit], lane] = True
     return np.asarray(read[:, :, :-1].mean(axis=1) * (shown / clocks))
 
 

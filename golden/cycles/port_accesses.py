@@ -6,48 +6,70 @@ writes and the scan's slots, in lanes side by side: see ``one_port_lanes``.
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ..organisations.organisation_of import organisation_of
+from ..organisations.organisation import Organisation
 from ..reference.coverage import Triangles
 from ..reference.exact import draw, fragments
-from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from .element_spans import LatticeSpans
 from .one_port_lanes import lane_of, scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
 
 
+class DrawnSpans(Protocol):
+    """Spans of some triangles, all that these cover; n of them.
+
+    ``begin`` ``end``  the triangles
+    ``units``          int64 (n,): memory units that each is drawn into, half of them in each lane
+    """
+
+    @property
+    def begin(self) -> int: ...
+
+    @property
+    def end(self) -> int: ...
+
+    @property
+    def units(self) -> Int64: ...
+
+    def counted(self, x: Int64, lane: Int64, weights: NDArray[np.bool_] | None) -> Int64:
+        """int64 (n, 2): how many fragments of each span are in each lane, or the sum of their
+        weights; ``x`` and ``lane`` of all fragments, triangles ascending, rows ascending, columns
+        ascending."""
+
+    def __len__(self) -> int: ...
+
+
 class PortAccesses:
     """The accesses of all spans of a node's list to its one-port units, asked for in drawing order;
     the node has drawn the list ``after`` before it."""
 
-    def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
+    def __init__(self, organisation: Organisation, display_list: DisplayList,
                  triangles: Triangles, after: DisplayList | None = None, node: int = 0) -> None:
-        self._configuration = configuration
+        self._configuration = organisation.configuration
         self._node = node
         self._display_list = display_list
         self._triangles = triangles
-        organisation = self._organisation = organisation_of(configuration)
+        self._organisation = organisation
         width, height, *_ = organisation.resolution
-        self._nearest = np.full(width * height, configuration.depth_background)
+        self._nearest = np.full(width * height, self._configuration.depth_background)
         self._accesses = np.zeros(organisation.units)
-        self._block_units = np.array([block.units for block in organisation.each[node].blocks])
         if after is not None:
             picture = draw(after, shading="flat", **organisation.resolution.shifts)
             self._nearest = picture.depth.astype(np.int64).reshape(-1)
 
-    def of(self, spans: LatticeSpans) -> Float64:
+    def of(self, spans: DrawnSpans) -> Float64:
         """float64 (n, 3, 2), by lane: fragments of each span, visible ones, and the clocks that
         their units need for both; the next call must go on where this one ends."""
-        if not len(spans.length):
+        if not len(spans):
             return np.zeros((0, 3, 2))
         reads, writes = self._accesses_of(spans)
-        # Half of a block's units are in each lane.
-        ways = np.maximum(self._block_units[spans.block] // 2, 1)
+        ways = np.maximum(spans.units // 2, 1)
         work = np.maximum(reads, (reads + writes) / ways[:, np.newaxis])
         return np.stack([reads, writes, work], axis=1)
 
@@ -57,7 +79,7 @@ class PortAccesses:
         scan."""
         return float(self._accesses.max()) / (1 - scan_share(self._configuration, self._node))
 
-    def _accesses_of(self, spans: LatticeSpans) -> tuple[Int64, Int64]:
+    def _accesses_of(self, spans: DrawnSpans) -> tuple[Int64, Int64]:
         """int64 (n, 2), by lane: fragments of each span, and visible ones, as the pixels are drawn
         one after another."""
         organisation = self._organisation
@@ -69,18 +91,7 @@ class PortAccesses:
         unit = organisation.unit(x, y)
         self._accesses += np.bincount(unit, 1 + visible, organisation.units)
         lane = lane_of(self._configuration, unit)
-        # Fragments come in the order of the whole spans and of the columns in each.
-        whole = np.repeat(np.arange(len(spans.whole)), spans.whole.length)
-        counts = np.zeros((2, len(spans.source), 2), np.int64)
-        for bits in np.unique(spans.x_bits).tolist():
-            column = x >> self._configuration.square_bits
-            key = ((whole << bits) | (column & ((1 << bits) - 1))) * 2 + lane
-            here = np.flatnonzero(spans.x_bits == bits)
-            place = (spans.source[here] << bits) | spans.x_offset[here]
-            for number, weights in enumerate((None, visible)):
-                found = np.bincount(key, weights, len(spans.whole) << bits + 1)
-                counts[number, here] = found.reshape(-1, 2)[place]
-        return counts[0], counts[1]
+        return spans.counted(x, lane, None), spans.counted(x, lane, visible)
 
     def _visible(self, pixel: Int64, depth: Int64) -> NDArray[np.bool_]:
         """Which fragments are nearer than all before them on their pixel; keeps the nearest."""

@@ -108,7 +108,7 @@ class PairOfLanes:
         self.waiting = [0.0, 0.0]
         self._one_bus = len(set(element.tolist())) < len(units)
         # Of the lines of a scan, from the first one that is shown on.
-        shown = shown_scan_shares(configuration)[:, element, lane]
+        shown = shown_scan_shares(organisation)[:, element, lane]
         row = np.arange(timing.vertical_active) >> organisation.resolution.y_shift
         shares = np.zeros((timing.vertical_total, 2))
         shares[:len(row), :len(units)] = shown[row % len(shown)]

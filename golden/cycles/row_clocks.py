@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from ..organisations.organisation import ElementBlock
 from .element_latencies import Pipeline
 from .element_spans import LatticeSpans
+from .port_accesses import DrawnSpans
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
@@ -51,6 +53,24 @@ def walks(blocks: Sequence[ElementBlock], elements: int, spans: LatticeSpans,
 
 def _blocks_of(blocks: Sequence[ElementBlock], elements: int) -> Int64:
     return np.bincount([block.element for block in blocks], minlength=elements)
+
+
+class WalkedSpans(DrawnSpans, Protocol):
+    """Spans as walkers find them.
+
+    ``element``  int64 (n,): whose each is
+    ``length``   int64 (n,): pixels
+    ``squares``  int64 (n,): entries that each is, one after another
+    """
+
+    @property
+    def element(self) -> Int64: ...
+
+    @property
+    def length(self) -> Int64: ...
+
+    @property
+    def squares(self) -> Int64: ...
 
 
 @dataclass(frozen=True, eq=False)

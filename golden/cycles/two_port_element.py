@@ -8,11 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..organisations.organisation_of import organisation_of
-from ..specification.configuration import MachineConfiguration
 from .element_latencies import NEVER, Drawn, Pipeline
-from .element_spans import LatticeSpans
-from .row_clocks import Entries
+from .row_clocks import Entries, WalkedSpans
 
 #: Three numbers of clocks: what a triangle's fragments take; from the first row's first fragment
 #: to the last fragment's end, where nothing came before; and how long before that end the last
@@ -25,13 +22,11 @@ class TwoPorts:
 
     bound = 0.0
 
-    def __init__(self, configuration: MachineConfiguration, pipeline: Pipeline,
-                 node: int = 0) -> None:
+    def __init__(self, elements: int, pipeline: Pipeline) -> None:
         self._pipeline = pipeline
-        self.elements = [TwoPortElement(pipeline)
-                         for _ in organisation_of(configuration).each[node].domains]
+        self.elements = [TwoPortElement(pipeline) for _ in range(elements)]
 
-    def costs(self, entries: Entries, spans: LatticeSpans) -> list[TwoPortCost]:
+    def costs(self, entries: Entries, spans: WalkedSpans) -> list[TwoPortCost]:
         """The cost of each pair, as the pair's element takes it."""
         if not len(entries.pair):
             return []

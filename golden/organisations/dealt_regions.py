@@ -10,6 +10,7 @@ import numpy as np
 
 from ..specification.commands import Fault
 from ..specification.configuration import MachineConfiguration
+from ..specification.interlace import Interlace
 from .host_broadcast import HostBroadcast
 from .organisation import Bool, Coordinate, ElementBlock, Int64, Resolution
 from .region_table import slots_of, static_table
@@ -51,6 +52,11 @@ class DealtRegions(HostBroadcast):
     @property
     def words(self) -> int:
         return self.configuration.words
+
+    @property
+    def inside(self) -> Interlace:
+        """Of each region's pixels over the units of its processing element."""
+        return self._interlace
 
     def _inside(self, x: Coordinate, y: Coordinate) -> tuple[Coordinate, Coordinate]:
         """The pixel's place in its region."""

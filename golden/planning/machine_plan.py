@@ -105,7 +105,9 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
         **fixed, sub_bits=own_sub_bits, words=planned.words,
         clocks_per_pixel=planned.clocks_per_pixel, timing=planned.timing,
         maximum_units=planned.maximum_units, allow_orphans=planned.allow_orphans,
-        packet=planned.packet, maximum_nodes=planned.maximum_nodes,
+        packet=planned.packet, maximum_nodes=planned.maximum_nodes, regions=planned.regions,
+        slots=planned.slots if planned.regions else 0, balance=planned.balance,
+        balancer=planned.balancer,
         fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
                                               max_error))
     lines = _lines(planned, full, needs, max_error)
@@ -168,11 +170,27 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
         _integer("channel", planned, full, needs.greatest_channel, needs),
         _interpolants(planned, full, needs),
         PlanLine("lines", "none", "none", "the scene has triangles only: no line stepper"),
+        *_regions(planned),
         PlanLine("words a memory unit", f"{planned.words:,}", f"{full.words:,}",
-                 f"{width}x{height} pixels over {planned.units} units"),
+                 f"{width}x{height} pixels over {planned.units} units"
+                 if planned.regions is None else
+                 f"{planned.slots} slots, each of {1 << planned.slot_bits} words of a region"),
         PlanLine("FIFO depth", str(planned.fifo_depth), str(full.fifo_depth),
                  f"{needs.drawn:,} of {needs.triangles:,} triangles may cover a pixel"),
     ]
+
+
+def _regions(planned: MachineConfiguration) -> list[PlanLine]:
+    """Where they are dealt out: what does not depend on the scene."""
+    if planned.regions is None:
+        return []
+    regions = planned.dealt_regions
+    size = f"{1 << regions.x_bits}x{1 << regions.y_bits}"
+    slots, even = planned.slots, regions.even_share(planned.processing_elements)
+    return [PlanLine(name, value, value, reason) for name, value, reason in (
+        ("regions", f"{regions.columns}x{regions.rows}", f"asked for; {size} pixels each"),
+        ("slots", str(slots), f"regions that each of {planned.processing_elements} processing "
+         f"elements has room for; an even share is {even}"))]
 
 
 def _stored_depth(planned: MachineConfiguration, needs: SceneNeeds) -> PlanLine:

@@ -3,7 +3,8 @@
 A pixel is covered when its centre is strictly inside the triangle or on a top
 or left edge.  Everything is in integers, so it is exact.  The steps are
 
-    display list → ``Triangles`` that can cover a centre → ``Spans`` of rows → fragments
+    display list → ``Triangles`` that can cover a centre → ``Extents`` of rows, or those that are
+    not empty as ``Spans`` → fragments
 
 and none of them loops over triangles, rows or pixels; large lists go through in
 chunks, so the working set stays bounded.  This is written independently of
@@ -65,10 +66,10 @@ class Triangles:
         x, y = corners[0::2], corners[1::2]
         x_low, x_high = _range(x)
         y_low, y_high = _range(y)
-        left = _first_centre(x_low, grid.unit_x, grid.width)
-        right = _first_centre(x_high, grid.unit_x, grid.width)
-        top = _first_centre(y_low, grid.unit_y, grid.height)
-        bottom = _first_centre(y_high, grid.unit_y, grid.height)
+        left = first_centre(x_low, grid.unit_x, grid.width)
+        right = first_centre(x_high, grid.unit_x, grid.width)
+        top = first_centre(y_low, grid.unit_y, grid.height)
+        bottom = first_centre(y_high, grid.unit_y, grid.height)
         kept = np.flatnonzero((left < right) & (top < bottom))
 
         # Within the box of a triangle of size S (and its pixels lie within it)
@@ -105,7 +106,7 @@ def _range(values: Integers) -> tuple[Integers, Integers]:
             np.maximum(np.maximum(first, second), third))  # fmt: skip
 
 
-def _first_centre(coordinate: Integers, unit: int, limit: int) -> Integers:
+def first_centre(coordinate: Integers, unit: int, limit: int) -> Integers:
     """The first pixel whose centre is not before ``coordinate``, held to 0 … limit.
 
     ceil((c - unit/2) / unit) = floor((c + unit/2 - 1) / unit), a shift.
@@ -196,11 +197,68 @@ class _HalfPlane:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """All rows of the boxes of the triangles ``begin`` … ``end`` - 1; int64 (n,) each.
+
+    ``triangle`` counts in ``Triangles``, not in the display list.  In drawing order: triangles
+    ascending, rows ascending within a triangle.  Columns ``first`` up to, without, ``beyond`` are
+    covered: those at or after the row's left edge, and before its right one.  Where both edges lie
+    between two centres the row is empty, and ``first`` equals ``beyond``.
+    """
+
+    begin: int
+    end: int
+    triangle: Int64
+    row: Int64
+    first: Int64
+    beyond: Int64
+
+    def __len__(self) -> int:
+        return len(self.triangle)
+
+
+def extents(triangles: Triangles, row_limit: int = ROW_LIMIT) -> Iterator[Extents]:
+    """Every row of every box once, about ``row_limit`` at a time.
+
+    A chunk holds whole triangles, so it may exceed the limit by one triangle's rows.
+    """
+    for begin, end, triangle, down, first, last in _bounds(triangles, row_limit):
+        # A row beside the screen has its edges there; they are held to the box, which is on it.
+        width = (triangles.right - triangles.left).take(triangle)
+        left = triangles.left.take(triangle)
+        yield Extents(
+            begin,
+            end,
+            triangle,
+            down + triangles.top.take(triangle),
+            np.minimum(first, width).astype(np.int64) + left,
+            np.maximum(last + 1, 0).astype(np.int64) + left,
+        )
+
+
 def spans(triangles: Triangles, row_limit: int = ROW_LIMIT) -> Iterator[Spans]:
     """Every covered pixel once per triangle, about ``row_limit`` rows at a time.
 
     A chunk holds whole triangles, so it may exceed the limit by one triangle's rows.
     """
+    for _, _, triangle, down, first, last in _bounds(triangles, row_limit):
+        last -= first
+        filled = np.flatnonzero(last >= 0)
+        triangle = triangle.take(filled)
+        yield Spans(
+            triangle=triangle,
+            row=down.take(filled) + triangles.top.take(triangle),
+            first=first.take(filled).astype(np.int64) + triangles.left.take(triangle),
+            length=last.take(filled).astype(np.int64) + 1,
+        )
+
+
+def _bounds(
+    triangles: Triangles, row_limit: int
+) -> Iterator[tuple[int, int, Int64, Int64, Float64, Float64]]:
+    """Of triangles ``begin`` … ``end`` - 1 the rows: triangle, rows below its first one, and the
+    first and the last column inside, counted from the box's left; first > last where none is."""
     half_planes = [_HalfPlane.of(triangles, begin) for begin in range(3)]
     height = (triangles.bottom - triangles.top).astype(np.int64)
     ends = np.cumsum(height)
@@ -208,14 +266,13 @@ def spans(triangles: Triangles, row_limit: int = ROW_LIMIT) -> Iterator[Spans]:
     while begin < len(triangles):
         done = int(ends[begin - 1]) if begin else 0
         end = max(begin + 1, int(np.searchsorted(ends, done + row_limit, side="right")))
-        yield _rows(triangles, half_planes, begin, end, height)
+        yield begin, end, *_rows(triangles, half_planes, begin, end, height)
         begin = end
 
 
 def _rows(
     triangles: Triangles, half_planes: list[_HalfPlane], begin: int, end: int, height: Int64
-) -> Spans:
-    """The spans of triangles ``begin`` … ``end`` - 1."""
+) -> tuple[Int64, Int64, Float64, Float64]:
     heights = height[begin:end]
     triangle = np.repeat(np.arange(begin, end), heights)
     starts = np.cumsum(heights) - heights
@@ -233,12 +290,4 @@ def _rows(
         np.maximum(first, np.where(right, 0.0, bound), out=first)
     np.ceil(first, out=first)
     np.floor(last, out=last)
-    last -= first
-    filled = np.flatnonzero(last >= 0)
-    triangle = triangle.take(filled)
-    return Spans(
-        triangle=triangle,
-        row=down.take(filled) + triangles.top.take(triangle),
-        first=first.take(filled).astype(np.int64) + triangles.left.take(triangle),
-        length=last.take(filled).astype(np.int64) + 1,
-    )
+    return triangle, down, first, last

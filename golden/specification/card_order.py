@@ -171,7 +171,8 @@ def check_cards(cards: str, *, dealt: bool = False) -> None:
         if dealt:
             check_equal_shares(units for _, units in domains(node))
         else:
-            _check_power_of_two(node.count(MEMORY_UNIT), CARD_NAMES[MEMORY_UNIT])
+            _check_power_of_two(node.count(MEMORY_UNIT), CARD_NAMES[MEMORY_UNIT],
+                                dealing=node == cards)
     units = sorted({node.count(MEMORY_UNIT) for node in nodes})
     if len(units) > 1:
         raise InputError(f"cards: nodes of {' and '.join(map(str, units))} memory units in one "
@@ -202,11 +203,14 @@ def check_equal_shares(shares: Iterable[int]) -> None:
                          "a cage such as 3x(PMM)")
 
 
-def _check_power_of_two(units: int, called: str) -> None:
+def _check_power_of_two(units: int, called: str, *, dealing: bool = False) -> None:
+    """``dealing``: regions could be dealt out instead."""
     if units & (units - 1):
         lower = 1 << (units.bit_length() - 1)
         raise InputError(f"cards: {units} {called}s are not supported yet; the number must be a "
-                         f"power of two, such as {lower} or {2 * lower}")
+                         f"power of two, such as {lower} or {2 * lower}"
+                         + ("; or deal regions of the screen out to any number of processing "
+                            "elements, as with --regions 8x8" if dealing else ""))
 
 
 def domains(cards: str) -> list[tuple[int, int]]:

@@ -286,7 +286,7 @@ class MachineConfiguration(Widths):
         if self.merge is not None:
             raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
                              "cage of one node, such as 4x(PMM)")
-        for name, default in (("words", 0), ("block", 1), ("skew", False)):
+        for name, default in (("block", 1), ("skew", False)):
             if getattr(self, name) != default:
                 raise InputError(f"{name}: is settled by the regions; leave it out")
         inside = self.interlace
@@ -302,6 +302,8 @@ class MachineConfiguration(Widths):
         if slots << self.slot_bits > MAXIMUM_WORDS:
             raise InputError(f"slots: {slots} need {slots << self.slot_bits} words in each memory "
                              f"unit, at most {MAXIMUM_WORDS}; take fewer, or add memory units")
+        if self.words not in (0, slots << self.slot_bits):  # as it is in a copy
+            raise InputError("words: is settled by the regions; leave it out")
         return slots
 
     def _check_queue(self) -> None:

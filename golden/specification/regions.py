@@ -95,5 +95,5 @@ def _size_bits(axis: str, pixels: int, wanted: int) -> int:
 
 def default_slots(count: int, elements: int) -> int:
     """Regions that each of so many processing elements has room for: a quarter more than an even
-    share."""
-    return -(-5 * count // (4 * elements))
+    share, but no more than there are."""
+    return min(count, -(-5 * count // (4 * elements)))

@@ -33,6 +33,7 @@ __all__ = [
     "ScanLines",
     "memory_bus_bits",
     "read_request_layout",
+    "region_place_layout",
     "scan_address_layout",
     "write_request_layout",
 ]
@@ -200,12 +201,20 @@ class PictureLines(wiring.Signature):
 
 
 def scan_address_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """A pixel at the highest resolution; ``valid`` is high in the first clock of its time."""
+    """A pixel at the highest resolution; ``valid`` is high in the first clock of its time.  Where
+    regions are dealt out, with the processing element that its region is given to, and the slot."""
     return data.StructLayout({
         "valid": 1,
         "x": configuration.x_bits,
         "y": configuration.y_bits,
+        **({} if configuration.regions is None else region_place_layout(configuration).members),
     })
+
+
+def region_place_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """Where a region lies."""
+    return data.StructLayout({"element": configuration.element_bits,
+                              "slot": configuration.table_bits})
 
 
 class ScanLines(wiring.Signature):

@@ -47,8 +47,8 @@ class CentralBroadcastController(wiring.Component):
     every FIFO has room, another one as ``TriangleSetup`` says.
 
     What is for nodes is only in machines that have them: ``nodes`` where merge cards end nodes,
-    ``lists_full`` with list memories, the next four in chains, ``tree`` in trees, the last three
-    where nodes send to frame units.
+    ``lists_full`` with list memories, the next four in chains, ``tree`` in trees, the next three
+    where nodes send to frame units.  The last two are where regions are dealt out.
 
     Members
     -------
@@ -82,6 +82,8 @@ class CentralBroadcastController(wiring.Component):
         Those to the frame units; then ``pictures`` are to the nodes, whose front picture is merged.
     frame_units: In(id_bits)
         Number of frame units, from the right end of the ID lines.
+    regions: Out(RegionLines), shown_table: Out(1)
+        To the processing elements; for the scan generator, in place of ``regions.table``.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
@@ -295,8 +297,8 @@ class CentralBroadcastController(wiring.Component):
             with m.Case(Opcode.FRAME_START):
                 m.d.comb += self.commands.ready.eq(1)
                 m.d.sync += [self.frame_cycles.eq(0), self.scans.eq(self.scan_start)]
-                self._nodes.start(m, self)
                 m.next = "START_FRAME"
+                self._nodes.start(m, self)
             with m.Case(Opcode.FRAME_END):
                 m.d.comb += self.commands.ready.eq(1)
                 m.next = "DRAWING"
@@ -385,15 +387,13 @@ class CentralBroadcastController(wiring.Component):
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
-
-        Squares are interlaced by equal shares only.
-        """
+        Squares and regions are interlaced by equal shares only."""
         configuration = self.configuration
         response = self.right.response
         units = response_fields(ResponseKind.DOMAIN, response.payload.value).units
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
             m.d.sync += self._owned.eq(self._owned + units)
-            if configuration.square_bits:
+            if configuration.square_bits or configuration.regions is not None:
                 with m.If(units != 1 << configuration.share_bits):
                     m.d.sync += self._unequal.eq(1)

@@ -8,8 +8,10 @@ from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
+from .balanced_regions import BalancedRegions
 from .node_control import NodeControl
 from .one_node import OneNode
+from .region_node import RegionNode
 from .snoop_control import SnoopControl
 from .tree_steps import TreeSteps
 
@@ -133,4 +135,7 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return DirectControl(configuration=configuration)
     if configuration.snoops:
         return SnoopControl(configuration=configuration)
+    if configuration.regions is not None:
+        kind = RegionNode if configuration.balancer == "host" else BalancedRegions
+        return kind(configuration=configuration)
     return OneNode()

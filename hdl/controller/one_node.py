@@ -47,7 +47,8 @@ class OneNode:
         return controller.pictures.swept
 
     def start(self, m, controller):
-        """Inside the clock in which a frame's start is taken: its background is kept."""
+        """Inside the clock in which a frame's start is taken, and its next state is told: its
+        background is kept."""
         for place, background in enumerate(controller.backgrounds):
             with m.If(controller.pictures.front != place):
                 m.d.sync += background.eq(controller.body)
@@ -73,6 +74,9 @@ class OneNode:
         """Inside the state that reports it; returns the next one."""
         return "SWAP"
 
+    def swapped(self, m):
+        """Inside the clock in which front and back change places."""
+
     #: The state after a swap.
     after_swap = "REPORT_SHOWN"
 
@@ -83,6 +87,7 @@ class OneNode:
             # Every pixel of the scan that begins here is fetched after this edge.
             shown = Signal.like(controller.scans, name="shown")
             m.d.sync += [pictures.front.eq(~pictures.front), shown.eq(controller.scans)]
+            self.swapped(m)
             m.next = self.after_swap
         with m.State("REPORT_SHOWN"):
             controller.respond(m, ResponseKind.FRAME_SHOWN, shown, "COMMAND")

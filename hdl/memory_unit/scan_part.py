@@ -7,6 +7,7 @@ from amaranth.lib.wiring import In
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.connectors import ScanLines
 from ..mapping.interlace import ScanAddress
+from ..mapping.region_scan import RegionScanAddress
 from ..wires import wires
 from .word_parts import pixel_layout
 
@@ -42,8 +43,9 @@ class ScanPart:
         """Put it into ``m``, the module of ``unit``, whose number is ``number``; ``fetch``,
         ``show``: as of ``ScanLines``, ``current`` of both pictures: what was just read is of the
         frame shown."""
-        m.submodules.fetch = fetched = ScanAddress(configuration=self.configuration)
-        m.submodules.show = shows = ScanAddress(configuration=self.configuration)
+        kind = ScanAddress if self.configuration.regions is None else RegionScanAddress
+        m.submodules.fetch = fetched = kind(configuration=self.configuration)
+        m.submodules.show = shows = kind(configuration=self.configuration)
         access, pictures = unit.memory.access, unit.pictures
         captured = Signal()
         pictures_read = access.pixel if self.configuration.scans_rank else access.color
@@ -51,10 +53,12 @@ class ScanPart:
         drawn = Signal()
         scan = wires(m, "scan_wires")
         for address, asked in ((fetched, fetch), (shows, show)):
-            scan.d.comb += [
-                address.total.eq(unit.total), address.id.eq(number),
-                address.x.eq(asked.x), address.y.eq(asked.y),
-            ]
+            told = {"id": number, "x": asked.x, "y": asked.y}
+            if self.configuration.regions is None:
+                told = {"total": unit.total, **told}
+            else:
+                told |= {"element": asked.element, "slot": asked.slot}
+            scan.d.comb += [getattr(address, name).eq(value) for name, value in told.items()]
         shown = shows.selected & drawn
         color = output
         if self.configuration.scans_rank:

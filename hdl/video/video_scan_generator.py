@@ -1,14 +1,16 @@
 """The video scan generator: addresses out, pixels back, sync to the screen."""
 
 from amaranth.hdl import *
-from amaranth.lib import stream, wiring
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.ranges import CHANNEL_BITS, COLOR_BITS
 from ..arithmetic.delay import delayed
 from ..backplane.connectors import ScanLines
+from ..backplane.region_lines import RegionLines
 from ..backplane.scan_chain import scanned_pixel_layout
+from .region_places import RegionPlaces
 from .scan_read_back import ScanReadBack
 
 __all__ = ["VideoPins", "VideoScanGenerator"]
@@ -48,6 +50,9 @@ class VideoScanGenerator(wiring.Component):
     clocks of the pixel belong to the processing elements.  Which units read, and
     which of them drives the bus, they know themselves.
 
+    Where regions are dealt out it looks each pixel's region up, a clock before it announces the
+    pixel, so that no unit need have a table (``RegionPlaces``).
+
     Latency: a pixel is on the pins five clocks after its fetch was announced.
     Throughput: a pixel every ``clocks_per_pixel`` clocks.
 
@@ -71,8 +76,11 @@ class VideoScanGenerator(wiring.Component):
     depths: Out(stream of depth words)
         In the order of the scan.
 
-    The last five only where pictures are merged as they are scanned: then a pixel passes through
+    These five only where pictures are merged as they are scanned: then a pixel passes through
     the merge cards, and is on the pins as many clocks later as there are of them, less one.
+
+    regions: In(RegionLines)
+        Only where regions are dealt out; with the table of the picture shown.
     """
 
     #: Clocks from the announcement to when it is shown, on to the video bus, and to the pins.
@@ -88,6 +96,8 @@ class VideoScanGenerator(wiring.Component):
             "start": Out(1),
             "pins": Out(VideoPins()),
             **(self._chain_members() if configuration.scans_rank else {}),
+            **({"regions": In(RegionLines(configuration))}
+               if configuration.regions is not None else {}),
         })
 
     def _chain_members(self):
@@ -103,6 +113,10 @@ class VideoScanGenerator(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         timing, scan, pins = self.configuration.timing, self.scan, self.pins
+        due, places = scan.fetch, None
+        if self.configuration.regions is not None:
+            places = RegionPlaces(configuration=self.configuration)
+            due = Signal(data.StructLayout({"valid": 1, "x": len(places.x), "y": len(places.y)}))
         clock = Signal(range(self.configuration.clocks_per_pixel))
         column = Signal(range(timing.horizontal_total))
         line = Signal(range(timing.vertical_total))
@@ -129,14 +143,22 @@ class VideoScanGenerator(wiring.Component):
                                == timing.horizontal_sync_positive),
             vertical_sync.eq((line < timing.vertical_sync) == timing.vertical_sync_positive),
             self.start.eq(pixel & (column == 0) & (line == 0)),
-            scan.fetch.valid.eq(pixel & active),
-            scan.fetch.x.eq(column - left),
-            scan.fetch.y.eq(line - top),
+            due.valid.eq(pixel & active),
+            due.x.eq(column - left),
+            due.y.eq(line - top),
         ]
+        if places is not None:
+            m.submodules.places = places
+            wiring.connect(m, wiring.flipped(self.regions), places.regions)
+            m.d.comb += [places.x.eq(due.x), places.y.eq(due.y),
+                         scan.fetch.element.eq(places.place.element),
+                         scan.fetch.slot.eq(places.place.slot)]
+            m.d.sync += [scan.fetch[name].eq(due[name]) for name in ("valid", "x", "y")]
 
         def when_on_bus(signal, name):
             """The signal when its pixel is on the video bus."""
-            return delayed(m, signal, self.bus_latency, name, reset_less=False)
+            looking_up = 0 if places is None else places.latency
+            return delayed(m, signal, looking_up + self.bus_latency, name, reset_less=False)
 
         on_bus = when_on_bus(active, "active")
         m.d.comb += scan.show.eq(

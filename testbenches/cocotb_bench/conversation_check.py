@@ -22,7 +22,8 @@ PRESENTED = (ResponseKind.MERGED, ResponseKind.FRAME_SHOWN)
 
 #: Values that no run has had enough clocks for.
 _CLOCKS = (ResponseKind.BOOTED, ResponseKind.FRAME_DRAWN, ResponseKind.MERGED, ResponseKind.BUSY,
-           ResponseKind.FRAGMENTS, ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED)
+           ResponseKind.FRAGMENTS, ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED,
+           ResponseKind.REGION_COUNT)
 
 
 class Expected(NamedTuple):
@@ -122,6 +123,8 @@ class ConversationCheck:
             return self._configuration.depth_background
         if kind in _CLOCKS:
             return cycle
+        if kind == ResponseKind.TABLE_ENTRY:
+            return self._configuration.processing_elements - 1
         if kind == ResponseKind.FRAME_SHOWN:
             return cycle // self._configuration.cycles_per_scan + 1
         return (1 << RESPONSE_VALUE_BITS) - 1

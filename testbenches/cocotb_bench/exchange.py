@@ -130,4 +130,11 @@ def configuration_of(values: dict[str, Any]) -> MachineConfiguration:
             values["timing"] = VideoTiming(**values["timing"])
         except (TypeError, ValueError) as error:
             raise InputError(f"configuration: timing: {error}") from None
+    if values.get("regions") is not None:
+        try:
+            columns, rows = values["regions"]
+        except (TypeError, ValueError):
+            raise InputError(f"configuration: regions: {values['regions']!r} is not a number of "
+                             "columns and of rows; export the machine again") from None
+        values["regions"] = columns, rows
     return MachineConfiguration(**values)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -14,6 +15,7 @@ from ..cocotb_bench.exchange import read_configuration
 from ..cocotb_bench.simulators import SIMULATORS
 from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import Comparison, compare
+from ..frames.region_figures import RegionTables
 from ..frames.responses import MachineError, Simulation
 from ..frames.simulation import simulate
 from .command_group import EXIT_DIFFERENT
@@ -56,17 +58,22 @@ def check_verilog_command(
     text = _text(verilog)
     from ..cocotb_bench.engine import CocotbEngine  # loads Amaranth
 
+    # Regions are drawn by a table that the host sends, if it may.
+    tables = None if machine.regions is None else RegionTables(machine, [display_list] * 2)
+    number = int(machine.balancer == "host")
     try:
         simulation = simulate(machine, display_list, CocotbEngine(simulator, verilog=text),
                               memory_seed=memory_seed, waveform=waveform,
-                              stall_seed=None if no_stalls else stall_seed)
+                              stall_seed=None if no_stalls else stall_seed,
+                              table=None if tables is None else tables.sent(number))
     except (AssertionError, TimeoutError, MachineError) as error:
         raise MachineError(f"{verilog}: {error}") from None
     except ToolMissingError as missing:
         raise InputError(str(missing)) from None
     comparison = compare(machine, display_list, simulation)
-    click.echo(_summary(simulation, comparison))
-    if not comparison.equal:
+    wrong = [] if tables is None else tables.figures(number, simulation).differences
+    click.echo(_summary(simulation, comparison, wrong))
+    if wrong or not comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
 
 
@@ -87,7 +94,8 @@ def _check_match(machine: MachineConfiguration, display_list: DisplayList) -> No
                          "built for flat ones: export a machine for this list")
 
 
-def _summary(simulation: Simulation, comparison: Comparison) -> str:
+def _summary(simulation: Simulation, comparison: Comparison, wrong: Sequence[str]) -> str:
+    """``wrong``: a line for each count that is not golden's."""
     lines = [
         f"equal: {comparison.pixels_compared:,} colours and {comparison.depths_compared:,} depths "
         "compared, 0 different" if comparison.equal else
@@ -95,6 +103,7 @@ def _summary(simulation: Simulation, comparison: Comparison) -> str:
         f"{comparison.depths_different:,} of {comparison.depths_compared:,} depths",
         f"  {simulation.engine}: {simulation.cycles:,} cycles, {len(simulation.scans)} whole scans "
         f"in {simulation.seconds:.1f} s, after {simulation.build_seconds:.1f} s of building",
+        *(f"  DIFFERENT: {line}" for line in wrong),
     ]
     if (first := comparison.first_difference) is not None:
         lines.insert(1, f"  first wrong pixel {first.pixel}: expected colour "

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 
@@ -21,6 +21,7 @@ from ...golden.specification.configuration import (
 )
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
+from ...golden.specification.regions import MAXIMUM_REGIONS, Balance, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 
@@ -41,6 +42,26 @@ class Size(click.ParamType):
                 self.fail(f"{value!r}: {field} {pixels} is not from 1 to {MAXIMUM_SIZE}", param,
                           ctx)
         return width, height
+
+
+class RegionCounts(click.ParamType):
+    """``8x4`` as (8, 4): columns and rows of regions; where a word stands for none of them, that
+    as None."""
+
+    name = "COLUMNSxROWS"
+
+    def __init__(self, none: str | None = None) -> None:
+        self.none = none
+
+    def convert(self, value: Any, param: click.Parameter | None,
+                ctx: click.Context | None) -> tuple[int, int] | None:
+        if value == self.none:
+            return None
+        match = re.fullmatch(r"([0-9]{1,4})[xX]([0-9]{1,4})", value.strip())
+        if match is None:
+            self.fail(f"{value!r} is not a number of columns and of rows of regions such as 8x8",
+                      param, ctx)
+        return int(match[1]), int(match[2])
 
 
 class NumberOr(click.ParamType):
@@ -199,10 +220,31 @@ _RETAIN_OPTION = click.option(
     "--retain", is_flag=True, default=None, help="Give each node a list memory: its triangles are "
     "loaded once, and all nodes draw theirs at the same time.")
 
+#: Regions of the screen that a table gives to the processing elements of one node.
+_REGIONS_OPTION = click.option(
+    "--regions", type=RegionCounts(), metavar="COLUMNSxROWS",
+    help="Deal so many regions of the screen out to the processing elements, of which there may be "
+    "any number, in place of interlaced pixels.  With one region each these are Blazek's "
+    "decompositions: --cards '4x(PMM)' --regions 1x4 his strips, --regions 2x2 his grid; with some "
+    "8 each, and a new table for every picture, Ellsworth's.")
+_DEALING_OPTIONS = (
+    click.option("--slots", type=click.IntRange(1, MAXIMUM_REGIONS), metavar="N",
+                 help="With regions: how many each processing element has room for.  [default: a "
+                 "quarter more than an even share]"),
+    click.option("--balance", type=click.Choice(get_args(Balance)),
+                 help="With regions: what is counted of each in a picture, by which they are dealt "
+                 "out for the next one: triangles, or the clocks these take it; static counts "
+                 "nothing, and they stay.  [default: clocks]"),
+    click.option("--balancer", type=click.Choice(get_args(Balancer)),
+                 help="With regions: who deals them out, the host, or the machine itself.  "
+                 "[default: host]"),
+)
+
 #: In place of these where there are several cages.
 _SEVERAL_CARDS_OPTION = click.option(
     "--cards", multiple=True, metavar="CARDS",
-    help=f"A cage, its boards from left to right: {_BOARDS}; give it once for each cage.  "
+    help=f"A cage, its boards from left to right: {_BOARDS}; with /COLUMNSxROWS behind it, as in "
+    "4x(PMM)/8x8, its elements draw regions of the screen; give it once for each cage.  "
     "[default: 4x(PMM), 4x(PMMC) and 4x(PMMT)]")
 _RETAIN_OR_NOT_OPTION = click.option(
     "--retain/--immediate", default=None, help="Cages of nodes only with list memories, of which "
@@ -212,7 +254,8 @@ _RETAIN_OR_NOT_OPTION = click.option(
 def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS, *_FURTHER_OPTIONS,
-                           _RETAIN_OPTION, *_NODE_OPTIONS, *_VIEW_OPTIONS))
+                           _RETAIN_OPTION, *_NODE_OPTIONS, _REGIONS_OPTION, *_DEALING_OPTIONS,
+                           *_VIEW_OPTIONS))
 
 
 def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -220,13 +263,13 @@ def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
     asked for, all else is for each of them."""
     return _with(command, (_SEVERAL_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS,
                            *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS,
-                           *_VIEW_OPTIONS))
+                           *_DEALING_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine, but for its precision."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_FURTHER_OPTIONS, _RETAIN_OPTION,
-                           *_NODE_OPTIONS, *_VIEW_OPTIONS))
+                           *_NODE_OPTIONS, _REGIONS_OPTION, *_DEALING_OPTIONS, *_VIEW_OPTIONS))
 
 
 def view_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -52,7 +52,8 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
 
     All elements of one node see every triangle; nodes each draw a share of them and merge their
     pictures: in a chain (C) while the screen is scanned, in a tree (T) when drawing is done, or on
-    a bus (S) to frame units (F); or each fragment goes to its memory unit directly (D).
+    a bus (S) to frame units (F); or each fragment goes to its memory unit directly (D).  With
+    regions, as in 4x(PMM)/8x8, elements draw the parts of the screen that a table gives them.
     Every pixel, every fragment and every pixel sent between nodes is compared with the golden
     model.  For each cage: clocks to load, draw and merge, the latency from the last triangle to the
     screen, the busiest node's share, what goes over the busiest link, memory.  All options but
@@ -66,6 +67,8 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
       cardcage compare teapot --cards '8x(PMM)' --cards '8x(PMMT)' --packet contiguous
       cardcage compare teapot --cards '4x(PMMPMMC)' --cards '2x(PMMPMMPMMPMMC)' --immediate
       cardcage compare --cards '4x(PMM)' --cards '4x(PMMS)FF' --cards '4xPD8xM'
+      cardcage compare teapot --cards '4x(PMM)' --cards '4x(PMM)/8x8' --cards '3x(PMM)/8x8'
+      cardcage compare teapot --cards '4x(PMM)/1x4' --cards '4x(PMM)/2x2' --balance static
       cardcage compare teapot --frames 8 --turn 45
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16,32,64 --simulate 0

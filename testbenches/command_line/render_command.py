@@ -50,6 +50,7 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
       cardcage render teapot --cards '4x(PMM)' --size 64x64
       cardcage render teapot --view 200,45 --zoom 1.5 --background navy
       cardcage render teapot --frames 8 --turn 45 --out turning
+      cardcage render teapot --frames 8 --turn 45 --cards '3x(PMM)' --regions 8x8
       cardcage render sphereflake:depth=1 --fraction-bits 6
       cardcage render random:n=40,size=12,seed=7 --preset tiny --waveform tiny.vcd
       cardcage render cardcage-out/display_list.npz --cards 'PM PMMM'

@@ -6,12 +6,13 @@ import json
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import click
 
 from ...golden.specification.configuration import RANGES
 from ...golden.specification.errors import InputError
+from ...golden.specification.regions import Balance
 from ..engines.choose_engine import ENGINES, make_engine
 from ..machine_options import SETUPS, MachineOptions
 from ..speed.baseline import against, load_baseline
@@ -22,7 +23,7 @@ from ..speed.speed_table import bench_facts, bench_table, bench_text
 from ..support.atomic_output import atomic_file, output_errors
 from ..support.progress import step_bar
 from .command_group import EXIT_DIFFERENT
-from .command_options import Several, view_options
+from .command_options import RegionCounts, Several, view_options
 
 #: The value of ``--engine`` that asks the cycle model only.
 MODEL = "model"
@@ -48,6 +49,12 @@ def _numbers(least: int, most: int) -> Several:
               "where they have one port]")
 @click.option("--fifo", "fifos", type=_numbers(*RANGES["fifo_depth"]),
               help="Triangles a processing element holds in waiting.  [default: 16]")
+@click.option("--regions", type=Several(RegionCounts("none"), "COLUMNSxROWS,…"),
+              help="Regions of the screen, dealt out by what the same picture costs them, as in "
+              "16x8; none interlaces pixels.  [default: none]")
+@click.option("--balance", "balances", type=Several(click.Choice(get_args(Balance)), "WHAT,…"),
+              help="With regions: what is counted of each: static nothing, triangles, or clocks.  "
+              "[default: clocks]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
               help="Of depths: visible draws each triangle before those drawn earlier, random "
               "shuffles them.  [default: visible]")
@@ -83,6 +90,7 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
       cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
       cardcage bench random_bbox16 mesh --elements 16 --block 1,2,4,8,16,32 --engine model
       cardcage bench random_bbox16 sliver_vert_2x480 --ports 1 --no-skew
+      cardcage bench random_bbox16 sliver_diag_480 --elements 16 --regions none,16x8
       cardcage bench random_bbox16 --elements 256,1024 --engine model
       cardcage bench --json now.json --against before.json
       cardcage bench --all --json everything.json

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -16,6 +17,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
 from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
+from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
 from ..sequence.scene_frames import SceneFrames
@@ -29,14 +31,31 @@ MEASURED_ALIKE = 1.05
 
 @dataclass(frozen=True)
 class Cage:
-    """``cards`` as they were asked for; ``retained``: nodes draw lists that were loaded once."""
+    """``cards`` as they were asked for; ``retained``: nodes draw lists that were loaded once;
+    ``regions``: columns and rows of them that are dealt out, if any are."""
 
     cards: str
     retained: bool = False
+    regions: tuple[int, int] | None = None
+
+    @classmethod
+    def named(cls, name: str, retained: bool = False) -> Cage:
+        """``4x(PMM)``, or with regions ``4x(PMM)/8x8``; what cannot be read is taken for cards.
+
+        >>> Cage.named("4x(PMM)/8x4")
+        Cage(cards='4x(PMM)', retained=False, regions=(8, 4))
+        """
+        match = re.fullmatch(r"(.*?)\s*/\s*([0-9]{1,4})x([0-9]{1,4})\s*", name, re.DOTALL)
+        if match is None:
+            return cls(name, retained)
+        return cls(match[1], retained, (int(match[2]), int(match[3])))
 
     @property
     def label(self) -> str:
-        return f"{self.cards} retained" if self.retained else self.cards
+        named = self.cards
+        if self.regions is not None:
+            named += "/{}x{}".format(*self.regions)
+        return f"{named} retained" if self.retained else named
 
     @property
     def spelled(self) -> str | None:
@@ -51,6 +70,9 @@ class Cage:
         merge = merge_card(self.spelled or "")
         return replace(asked, cards=self.cards, retain=self.retained or None,
                        list_words=asked.list_words if self.retained else None,
+                       regions=self.regions, **{
+                           name: None if self.regions is None else getattr(asked, name)
+                           for name in ("slots", "balance", "balancer")},
                        packet=None if merge is None else asked.packet,
                        queue=asked.queue if merge == DIRECT_MERGE else None)
 
@@ -78,6 +100,7 @@ class CageRun:
     ``differences``  a line each: what is not as the golden model has it
     ``warnings``     a line each
     ``views``        of all views that were asked for; all else is of the first one
+    ``regions``      of the frame that is measured; None where none are dealt out
     """
 
     cage: Cage
@@ -93,6 +116,7 @@ class CageRun:
     differences: Sequence[str]
     warnings: Sequence[str]
     views: Sequence[ViewFigures] = ()
+    regions: RegionFigures | None = None
 
     @property
     def fragments(self) -> int:
@@ -159,8 +183,9 @@ class CageJob:
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *count_differences(nodes),
-             *unit_differences(simulation, golden), *_view_differences(views)],
-            [*resolution_warnings(configuration), *simulation.notes], views)
+             *unit_differences(simulation, golden), *_region_differences(frames.regions),
+             *_view_differences(views)],
+            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions)
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
@@ -175,6 +200,10 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
         found.append(f"{wrong} of {len(scans)} scans, of frames of one scene, show another picture "
                      "than the last")
     return found
+
+
+def _region_differences(regions: RegionFigures | None) -> list[str]:
+    return [] if regions is None else regions.differences
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:

@@ -39,7 +39,7 @@ Step = Callable[[str], None]
 class CompareOptions:
     """What can be asked of a comparison besides ``machine``, which is for all cages.
 
-    ``cards``          a cage each
+    ``cards``          a cage each, as ``Cage.named`` reads it
     ``retain``         cages of nodes with list memories (True), without (False), or both
     ``nodes``          of the cages of a sweep; none makes no sweep
     ``simulate``       cages of the sweep are simulated up to so many nodes
@@ -82,9 +82,9 @@ class CompareOptions:
         found: dict[Cage, None] = {}
         for cards in self.cards:
             lists = [False, True] if self.retain is None else [self.retain]
-            nodes = merge_card(Cage(cards).spelled or "") is not None
+            nodes = merge_card(Cage.named(cards).spelled or "") is not None
             for retained in lists if nodes else [False]:
-                found[Cage(cards, retained)] = None
+                found[Cage.named(cards, retained)] = None
         return list(found)
 
     def points(self) -> list[Place]:
@@ -179,7 +179,7 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     with the golden model and with each other.
 
     ``scene``    a mesh file, a saved display list (``.npz``), ``hard:NAME`` or a built-in scene
-    ``cards``    a cage each; one alone may be a string
+    ``cards``    a cage each; one alone may be a string; with regions as in ``4x(PMM)/8x8``
     ``out``      folder of the report; None writes none
     ``step``     is called with a few words as the work begins, and as each cage is done
     ``machine``  the fields of ``MachineOptions`` that are for all cages: ``size``,
@@ -221,7 +221,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     loaded = load_scene(scene, options.machine) if views is None else views.first
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
-    known = {(cage.spelled, cage.retained) for cage in cages}
+    known = {(cage.spelled, cage.retained, cage.regions) for cage in cages}
     jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells, views=views)
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
@@ -241,14 +241,15 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
                           command_line, time.perf_counter() - began)
 
 
-def _key(place: Place) -> tuple[str | None, bool] | None:
+def _key(place: Place) -> tuple[str | None, bool, tuple[int, int] | None] | None:
     """As which cage of the comparison a point is drawn, if it is one."""
-    return None if place.copies > 1 else (place.cage.spelled, place.retained)
+    return None if place.copies > 1 else (place.cage.spelled, place.retained, place.regions)
 
 
 def _curves(found: Sequence[Any], runs: Sequence[CageRun]) -> tuple[list[Curve], list[str]]:
     """The curves, and what is wrong with the cages that were simulated for them alone."""
-    compared = {(run.configuration.cards, run.cage.retained): run for run in runs}
+    compared = {(run.configuration.cards, run.cage.retained, run.cage.regions): run
+                for run in runs}
     points: list[Point] = []
     wrong: list[str] = []
     for result in found:

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ...golden.organisations.machine_facts import machine_facts
+from ..reports.region_facts import region_facts
 from .cage import CageRun
 from .compare_cages import CageComparison
 from .node_sweep import Curve, FrameTime
@@ -36,15 +37,17 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
                           each piece between two nodes), steps (pixels of the longest send)
         ``memory``        bits in all, memories (words, bits, instances)
         ``cells``         flip_flops, gates, multipliers; None where they were not counted
+        ``regions``       where they are dealt out: ``reports.region_facts``, of the frame measured;
+                          else None
         ``views``         where several were asked for, how many, and the least, mean and greatest
                           draw, merge, fragments, busiest_node_share, pixels_sent; else None
         ``engine`` ``simulated_cycles`` ``seconds`` ``build_seconds``
 
-    ``refused``       objects: label, cards, retained, reason, failed (it was built, and delivered
-                      no picture)
-    ``sweep``         objects, of each curve: label, cards (that repeat), retained, growing (the
-                      scene does, with the nodes), points: nodes, triangles, model and simulated
-                      (draw, merge, total, speed_up; simulated may be None)
+    ``refused``       objects: label, cards, retained, regions, reason, failed (it was built, and
+                      delivered no picture)
+    ``sweep``         objects, of each curve: label, cards (that repeat), retained, regions, growing
+                      (the scene does, with the nodes), points: nodes, triangles, model and
+                      simulated (draw, merge, total, speed_up; simulated may be None)
     ``warnings`` ``wall_seconds``
     """
     return {
@@ -57,7 +60,8 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
         "pictures": [[run.cage.label for run in group] for group in comparison.pictures],
         "cages": [cage_facts(run) for run in comparison.runs],
         "refused": [{"label": each.cage.label, "cards": each.cage.cards,
-                     "retained": each.cage.retained, "reason": each.reason, "failed": each.failed}
+                     "retained": each.cage.retained, "regions": each.cage.regions,
+                     "reason": each.reason, "failed": each.failed}
                     for each in comparison.refused],
         "sweep": [_curve(curve) for curve in comparison.curves],
         "warnings": comparison.warnings,
@@ -87,6 +91,7 @@ def cage_facts(run: CageRun) -> dict[str, Any]:
         "memory": {"bits": run.memory_bits,
                    "memories": [asdict(memory) for memory in run.memories]},
         "cells": run.cells,
+        "regions": region_facts(run.regions),
         "views": _views(run),
         "engine": simulation.engine,
         "simulated_cycles": simulation.cycles,
@@ -124,6 +129,7 @@ def _curve(curve: Curve) -> dict[str, Any]:
         "label": curve.label,
         "cards": curve.piece,
         "retained": curve.retained,
+        "regions": curve.regions,
         "growing": curve.growing,
         "points": [{"nodes": point.place.nodes, "triangles": point.triangles,
                     "model": time(point.model, model),

@@ -7,6 +7,7 @@ from dataclasses import astuple
 from itertools import groupby
 
 from ...golden.organisations.organisation_of import organisation_of
+from ..frames.region_figures import RegionFigures
 from ..support.text_table import TextTable, print_tables, tables_text
 from .cage import CageRun
 from .compare_cages import CageComparison
@@ -15,6 +16,9 @@ from .view_spread import spreads
 
 #: What is told only of several views.
 OF_VIEWS = "over all views: least / mean / greatest"
+
+#: What is told only where some cage has regions.
+OF_REGIONS = "regions dealt out"
 
 #: Stands for a figure that a cage does not have.
 NOTHING = "-"
@@ -29,6 +33,10 @@ def _latency(name: str) -> Callable[[CageRun], str]:
 
 def _sent(figure: Callable[[CageRun], int]) -> Callable[[CageRun], str]:
     return lambda run: f"{figure(run):,}" if run.configuration.merge else NOTHING
+
+
+def _of_regions(figure: Callable[[RegionFigures], str]) -> Callable[[CageRun], str]:
+    return lambda run: NOTHING if run.regions is None else figure(run.regions)
 
 
 def _cells(name: str) -> Callable[[CageRun], str]:
@@ -62,6 +70,11 @@ FIGURES: dict[str, Rows] = {
         "fragments": lambda run: f"{run.fragments:,}",
         "of the busiest node": lambda run: f"{100 * run.busiest_share:.1f} %",
     },
+    OF_REGIONS: {
+        "utilisation, as counted": _of_regions(lambda regions: f"{regions.utilisation:.1%}"),
+        "of the busiest element": _of_regions(
+            lambda regions: f"{int(regions.loads.max()):,} {regions.counted}"),
+    },
     "sent between nodes": {
         "pixels": _sent(lambda run: run.traffic.pixels),
         "pixels on the busiest link": _sent(lambda run: run.traffic.busiest_piece),
@@ -92,6 +105,8 @@ def figures(comparison: CageComparison) -> dict[str, list[tuple[str, list[str]]]
         left_out.add("cells")
     if not any(run.views for run in comparison.runs):
         left_out.add(OF_VIEWS)
+    if all(run.regions is None for run in comparison.runs):
+        left_out.add(OF_REGIONS)
     return {heading: [(name, [figure(run) for run in comparison.runs])
                       for name, figure in rows.items()]
             for heading, rows in FIGURES.items() if heading not in left_out}

@@ -6,7 +6,8 @@ The machine boots, loads lists where nodes have some, and draws::
     READ_DEPTH  READ_COUNTERS
 
 The first frame begins as the machine has booted, the next ones as the frame before is shown; the
-last one is what every figure is of.
+last one is what every figure is of.  Where regions are dealt out, they are packed once, before the
+second frame, by what the first one cost: the others cost the same.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ from ..engines.choose_engine import make_engine
 from ..engines.engine import EngineRun, Job, Scan
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.region_figures import RegionFigures, RegionTables
+from ..frames.region_host import region_readings, table_commands
 from ..frames.responses import Answers, Simulation
 from ..frames.simulation import engine_errors
 
@@ -90,8 +93,14 @@ class FrameSequence:
         whole = frame_commands(configuration, display_list)
         self._opcodes = [opcode_of(word) for word in whole]
         self._start = self._opcodes.index(Opcode.FRAME_START)
-        words = [*whole, *whole[self._start:] * (FRAMES - 1),
-                 commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+        tables = (None if configuration.regions is None
+                  else RegionTables(configuration, [display_list] * FRAMES))
+        sent = None if tables is None else tables.sent(1)
+        dealing = [] if sent is None else table_commands(configuration, sent)
+        self._dealing = len(dealing)
+        words = [*whole, *dealing, *whole[self._start:] * (FRAMES - 1),
+                 commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS),
+                 *region_readings(configuration)]
         with engine_errors(engine):
             self._run: EngineRun = make_engine(engine).run(Job(
                 configuration, commands=words,
@@ -99,7 +108,11 @@ class FrameSequence:
                 memory_seed=memory_seed,
                 maximum_cycles=FRAMES * most_frame_clocks(configuration, len(words))))
         answers = Answers(configuration, self._run)
-        self.simulation: Simulation = answers.frame(FRAMES - 1, reading=0, read_back=0)
+        self.simulation: Simulation = answers.frame(
+            FRAMES - 1, reading=0, read_back=0,
+            table=None if tables is None else tables.table(FRAMES - 1))
+        self.regions: RegionFigures | None = (
+            None if tables is None else tables.figures(FRAMES - 1, self.simulation))
 
     def _cycles_of(self, kind: ResponseKind) -> list[int]:
         return [cycle for found, _, cycle in self._run.responses if found == kind]
@@ -114,7 +127,8 @@ class FrameSequence:
         """When the machine took a command of a frame, by its place in the first one."""
         assert self._run.accepted is not None
         commands_of_frame = len(self._opcodes) - self._start
-        return int(self._run.accepted[command + frame * commands_of_frame])
+        dealing = self._dealing if frame else 0
+        return int(self._run.accepted[command + dealing + frame * commands_of_frame])
 
     @property
     def shown_scans(self) -> list[Scan]:

@@ -29,6 +29,7 @@ from ...golden.specification.card_order import (
 from ...golden.specification.configuration import MachineConfiguration, Packet
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
+from ..frames.region_figures import RegionTables
 from ..frames.setup_timing import setup_timing
 from .cage import Cage, CageJob, CageRun, Refused
 
@@ -97,9 +98,11 @@ class FrameTime:
 
 def predicted_time(configuration: MachineConfiguration, display_list: DisplayList,
                    retained: bool) -> FrameTime:
-    """What the cycle model says."""
+    """What the cycle model says; where regions are dealt out, by what the scene itself costs."""
+    table = (None if configuration.regions is None else
+             RegionTables(configuration, [display_list] * 2).table(1))
     draw = predict_cycles(configuration, display_list, setup=setup_timing(configuration),
-                          retained=retained).cycles
+                          retained=retained, table=table).cycles
     return FrameTime(round(draw), predict_merge(configuration, display_list))
 
 
@@ -111,10 +114,11 @@ class Place:
     retained: bool
     growing: bool
     nodes: int
+    regions: tuple[int, int] | None = None
 
     @property
     def cage(self) -> Cage:
-        return Cage(repeated(self.piece, self.nodes), self.retained)
+        return Cage(repeated(self.piece, self.nodes), self.retained, self.regions)
 
     @property
     def copies(self) -> int:
@@ -162,15 +166,15 @@ def time_of(run: CageRun | Refused | None) -> FrameTime | None:
 
 def places(cages: Sequence[Cage], nodes: Sequence[int]) -> Iterator[Place]:
     """The points of all curves, each once: with one node nothing has grown yet."""
-    pieces: dict[tuple[str, bool], None] = {}
+    pieces: dict[tuple[str, bool, tuple[int, int] | None], None] = {}
     for cage in cages:
         if cage.spelled is not None:
-            pieces[repeated_piece(cage.cards), cage.retained] = None
-    for piece, retained in pieces:
+            pieces[repeated_piece(cage.cards), cage.retained, cage.regions] = None
+    for piece, retained, regions in pieces:
         for growing in (False, True):
             for number in sorted(set(nodes)):
                 if not growing or number > 1:
-                    yield Place(piece, retained, growing, number)
+                    yield Place(piece, retained, growing, number, regions)
 
 
 @dataclass(frozen=True)
@@ -181,10 +185,13 @@ class Curve:
     retained: bool
     growing: bool
     points: Sequence[Point]
+    regions: tuple[int, int] | None = None
 
     @property
     def label(self) -> str:
         piece = self.piece if merge_card(self.piece) else f"{self.piece}, one node"
+        if self.regions is not None:
+            piece += ", {}x{} regions".format(*self.regions)
         return f"{piece}, retained" if self.retained else piece
 
     def speed_ups(self) -> list[tuple[Point, float, float | None]]:
@@ -204,11 +211,12 @@ def _rate(triangles: int, time: FrameTime) -> float:
 def curves_of(points: Sequence[Point]) -> list[Curve]:
     """The curves, those of the scene as it is first; each scene that grows begins as it is."""
 
-    def key(point: Point) -> tuple[bool, str, bool]:
-        return point.place.growing, point.place.piece, point.place.retained
+    def key(point: Point) -> tuple[bool, str, bool, tuple[int, int]]:
+        place = point.place
+        return place.growing, place.piece, place.retained, place.regions or (0, 0)
 
     begin = [replace(point, place=replace(point.place, growing=True)) for point in points
              if point.place.nodes == 1]
     ordered = sorted([*points, *begin], key=lambda point: (*key(point), point.place.nodes))
-    return [Curve(piece, retained, growing, list(some))
-            for (growing, piece, retained), some in groupby(ordered, key)]
+    return [Curve(piece, retained, growing, list(some), None if regions == (0, 0) else regions)
+            for (growing, piece, retained, regions), some in groupby(ordered, key)]

@@ -30,17 +30,18 @@ COMPONENT_NAMES = (
     "central_broadcast_controller", *(
         module for letter, module in CARD_MODULES.items() if letter not in MERGING_CARDS),
     "video_scan_generator", *(CARD_MODULES[letter] for letter in MERGING_CARDS),
-    "band_probes", "band_scan", "broadcast_queue", "crossbar", "depth_read_back",
+    "balancer", "band_probes", "band_scan", "broadcast_queue", "crossbar", "depth_read_back",
     "direct_element", "direct_element_control", "divider", "drawn_map", "edge_columns",
     "edge_setup", "fragment_queue", "fragment_stepper", "frame_tags", "id_increment",
-    "interpolator", "large_visits", "lattice_block", "memory_bus_selector", "nearest_word",
-    "one_port_depth_test", "one_port_lane", "one_port_memory", "own_columns", "own_regions",
-    "picture_maps", "pipelined_multiplier", "pixel_address", "pixel_box", "plane_setup",
-    "processing_element_control", "region_address", "region_clip", "region_counts", "region_rows",
-    "region_spans", "region_visits", "response_link", "result_queue", "round_robin",
-    "sampling_grid", "scan_address", "span_clip", "survey", "tag_sweep", "triangle_outline",
-    "triangle_rows", "triangle_setup", "triangle_spans", "two_port_depth_test", "two_port_memory",
-    "unit_counters", "unit_feed", "unit_pixel", "vertex_sort",
+    "interpolator", "large_visits", "lattice_block", "least_loaded", "memory_bus_selector",
+    "merge_sorter", "nearest_word", "one_port_depth_test", "one_port_lane", "one_port_memory",
+    "own_columns", "own_regions", "picture_maps", "pipelined_multiplier", "pixel_address",
+    "pixel_box", "plane_setup", "processing_element_control", "region_address", "region_clip",
+    "region_counts", "region_order", "region_rows", "region_spans", "region_visits",
+    "response_link", "result_queue", "round_robin", "sampling_grid", "scan_address", "span_clip",
+    "survey", "tag_sweep", "triangle_outline", "triangle_rows", "triangle_setup", "triangle_spans",
+    "two_port_depth_test", "two_port_memory", "unit_counters", "unit_feed", "unit_pixel",
+    "vertex_sort",
 )
 
 

@@ -23,7 +23,7 @@ __all__ = ["component_for", "describe", "memories"]
 
 #: The four boards and those of their parts that state a latency or a throughput.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator", "triangle_spans", "fragment_stepper", "interpolator",
+          "video_scan_generator", "fragment_stepper", "interpolator",
           "depth_read_back", "response_link", "survey", "frame_tags", "tag_sweep")
 _TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"),
                    2: ("two_port_depth_test", "two_port_memory")}
@@ -53,11 +53,13 @@ def describe(configuration: MachineConfiguration, verilog: str,
     """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
 
     Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
-    ``ports``, ``number_formats``, ``timing``, ``merging``, ``commands``, ``memories``.
+    ``ports``, ``number_formats``, ``timing``, ``merging``, ``regions``, ``commands``, ``memories``.
     """
     top = name or "machine"
     modules = _modules(verilog)
-    timed = (name,) if name else (*_TIMED, *_TIMED_BY_PORTS[configuration.memory_ports])
+    walker = "triangle_spans" if configuration.regions is None else "region_spans"
+    timed = (name,) if name else (*_TIMED[:4], walker, *_TIMED[4:],
+                                  *_TIMED_BY_PORTS[configuration.memory_ports])
     if name is None and configuration.setup == "hardware":
         timed += ("triangle_setup",)
     return {
@@ -70,6 +72,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
         "timing": {part: _inspected(COMPONENTS[part](configuration), stated_timing)
                    for part in timed},
         "merging": _merging(configuration),
+        "regions": _regions(configuration),
         "commands": _command_words(configuration),
         "memories": memories(verilog, top),
     }
@@ -120,6 +123,9 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
           [number("round", c.round_bits, "round in which a node drew a pixel, beside its depth")]),
         *([] if not (c.merges_directly and c.order_bits) else
           [number("drawn_by", c.node_order_bits, "node that drew a pixel, below its round")]),
+        *([] if c.regions is None else
+          [number("element", c.element_bits, "number of a processing element, or one more"),
+           number("slot", c.table_bits, "place of a region in its processing element")]),
     ]
 
 
@@ -144,6 +150,25 @@ def _merging(configuration: MachineConfiguration) -> dict[str, Any] | None:
     }
 
 
+def _regions(configuration: MachineConfiguration) -> dict[str, Any] | None:
+    """How regions of the screen are dealt out; None where pixels are interlaced."""
+    if configuration.regions is None:
+        return None
+    regions = configuration.dealt_regions
+    return {
+        "columns": regions.columns,
+        "rows": regions.rows,
+        "region_width": 1 << regions.x_bits,
+        "region_height": 1 << regions.y_bits,
+        "slots": configuration.slots,
+        "words_of_a_slot": 1 << configuration.slot_bits,
+        "balance": configuration.balance,
+        "balancer": configuration.balancer,
+        "at_first": "the processing element of a region is its number, row by row, modulo theirs",
+        "explained_in": "docs/regions.md",
+    }
+
+
 def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
     bodies = {
         commands.Opcode.FRAME_START: commands.frame_start_layout(),
@@ -153,6 +178,8 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
             commands.triangle_layout(configuration) if configuration.setup == "hardware"
             else commands.prepared_triangle_layout(configuration)),
     }
+    if configuration.regions is not None:
+        bodies[commands.Opcode.REGION] = commands.region_layout(configuration)
     return {
         "version": commands.VERSION,
         "explained_in": "docs/command-words.md",

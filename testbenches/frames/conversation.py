@@ -79,6 +79,8 @@ def owed_to(organisation: Organisation, word: int) -> list[Owed]:
         return [Owed(ResponseKind.DEPTH)] * organisation.depths_read_back
     if opcode == Opcode.READ_COUNTERS:
         return _counters(organisation)
+    if opcode in (Opcode.READ_REGIONS, Opcode.READ_TABLE):
+        return _of_regions(organisation, opcode)
     return [Owed(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)]
 
 
@@ -90,7 +92,21 @@ def _silent(organisation: Organisation) -> list[Opcode]:
         silent.append(Opcode.TRIANGLE)
     if configuration.list_words:
         silent += [Opcode.LOAD, Opcode.DRAW_LISTS, Opcode.CLEAR_LISTS]
+    if configuration.regions is not None and configuration.balancer == "host":
+        silent.append(Opcode.REGION)  # of a table as it should be
     return silent
+
+
+def _of_regions(organisation: Organisation, opcode: Opcode) -> list[Owed]:
+    """Of each processing element all slots; or the table that the machine makes."""
+    configuration = organisation.configuration
+    if configuration.regions is not None:
+        if opcode == Opcode.READ_REGIONS and configuration.balance != "static":
+            slots = configuration.processing_elements * configuration.slots
+            return [Owed(ResponseKind.REGION_COUNT)] * slots
+        if opcode == Opcode.READ_TABLE and configuration.balancer == "hardware":
+            return [Owed(ResponseKind.TABLE_ENTRY)] * configuration.dealt_regions.count
+    return [Owed(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)]
 
 
 def _counters(organisation: Organisation) -> list[Owed]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
@@ -19,12 +20,15 @@ from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..engines.engine import Job
 from .conversation import responses_owed
+from .region_host import region_readings, table_commands
 
 
 def frame_commands(configuration: MachineConfiguration, display_list: DisplayList,
-                   fraction_bits: int | None = None) -> list[int]:
+                   fraction_bits: int | None = None, *,
+                   table: NDArray[np.int64] | None = None) -> list[int]:
     """Frame start, triangles, frame end; where nodes have list memories, these are loaded first,
-    and drawn in the triangles' place.
+    and drawn in the triangles' place; before the frame the ``table`` by which regions are dealt
+    out, unless it is that of the frame before.
 
     Triangles come in the order in which nodes share them.
     Where the machine has no set-up of its own the host does it here, at the resolution that the
@@ -44,7 +48,8 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     vertices = configuration.setup == "hardware"
     if not configuration.list_words or (vertices and fraction_bits is not None):
-        return [start, *triangles, end]
+        dealing = [] if table is None else table_commands(configuration, table)
+        return [*dealing, start, *triangles, end]
     clear, draw = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.DRAW_LISTS))
     loads = [commands.with_opcode(word, Opcode.LOAD) for word in triangles]
     return [clear, *loads, start, draw, end]
@@ -78,10 +83,12 @@ def frame_job(
     stall_seed: int | None = None,
     waveform: Path | None = None,
     fraction_bits: int | None = None,
+    table: NDArray[np.int64] | None = None,
 ) -> Job:
     """Everything an engine needs to run one frame with depths and counters read back."""
-    words = [*frame_commands(configuration, display_list, fraction_bits),
-             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS)]
+    words = [*frame_commands(configuration, display_list, fraction_bits, table=table),
+             commands.command(Opcode.READ_DEPTH), commands.command(Opcode.READ_COUNTERS),
+             *region_readings(configuration)]
     return Job(
         configuration=configuration,
         commands=words,

@@ -9,6 +9,7 @@ from ...golden.merging.traffic import Traffic
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.configuration import MachineConfiguration
 from .compare import Comparison
+from .region_figures import RegionFigures
 from .responses import Simulation
 
 
@@ -22,6 +23,7 @@ class Rendering:
     ``report``        where ``report.html`` is, if it was written
     ``traffic``       what is sent to merge its picture, by the golden model; None where there is
                       one node, or nodes were not asked for their counts
+    ``regions``       what regions cost that are dealt out; None where there are none
     """
 
     scene: SceneDisplayList
@@ -33,6 +35,7 @@ class Rendering:
     wall_seconds: float
     report: Path | None = None
     traffic: Traffic | None = None
+    regions: RegionFigures | None = None
 
     @property
     def fragments(self) -> int:

@@ -58,6 +58,10 @@ class Simulation:
     ``taken``            fragments that each memory unit took from all processing elements, in its
                          own count; empty where it belongs to one
     ``followed``         those of them whose pixel a fragment just ahead of them was to change
+    ``slot_counts``      int64 (elements, slots): what each processing element counted of its
+                         regions; None where that was not read
+    ``next_table``       int64 (regions,): the table that the machine has made for the next picture;
+                         None likewise
     ``repeated_scans``   scans that began with the old picture since the frame start
     ``scans``            every whole scan, in order
     ``activity``         what the processing elements did meanwhile; None where nothing tells
@@ -83,6 +87,8 @@ class Simulation:
     sent: Sequence[int] = ()
     taken: Sequence[int] = ()
     followed: Sequence[int] = ()
+    slot_counts: NDArray[np.int64] | None = None
+    next_table: NDArray[np.int64] | None = None
 
 
 #: In place of a read-back or a reading, of a frame of which nothing was read.
@@ -100,6 +106,9 @@ class Answers:
     ``taken``      int64 (readings, units): fragments, of cages whose elements have all units
                    together
     ``followed``   int64 (readings, units): likewise
+    ``slot_counts``  int64 (readings, elements, slots): what was counted of regions, as often as
+                   that was read
+    ``tables``     int64 (readings, regions): tables that the machine made, likewise
 
     Raises ``MachineError`` where the machine reports a fault, or a resolution that is not the
     configuration's.
@@ -132,25 +141,35 @@ class Answers:
             for kind in (ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED))
         if configuration.merges_directly:
             self.sent = self.fragments
+        self.slot_counts = np.array(self._values[ResponseKind.REGION_COUNT], np.int64).reshape(
+            -1, len(self._domains), configuration.slots or 1)
+        self.tables = np.array(self._values[ResponseKind.TABLE_ENTRY], np.int64).reshape(
+            -1, 1 if configuration.regions is None else configuration.dealt_regions.count)
 
     def _fields(self, kind: ResponseKind) -> list[dict[str, int]]:
         return [response_fields(kind, value) for value in self._values[kind]]
 
-    def frame(self, number: int, reading: int, read_back: int | None = None) -> Simulation:
-        """Frame ``number``.
+    def frame(self, number: int, reading: int, read_back: int | None = None, *,
+              counted: int | None = None,
+              table: NDArray[np.int64] | None = None) -> Simulation:
+        """Frame ``number``, that was drawn by ``table``, or where that is None by the one with
+        which the machine began.
 
         Its work is what that ``reading`` of the counters says, its activity the record that ends
         with the reading, if the engine keeps any; its depths are those of that ``read_back``, by
         default as if each frame's were read back once, or ``NOT_READ``, as ``reading`` may be.
+        Counts of regions are those of reading ``counted`` of them, by default as if they were read
+        as often as the counters; if they were read at all.
         """
         run, organisation = self._run, self._organisation
         shown = self._cycles[ResponseKind.FRAME_SHOWN][number]
         read = reading != NOT_READ
+        counted = reading if counted is None else counted
         [units] = self._fields(ResponseKind.UNITS)
         return Simulation(
             video=next(scan.picture for scan in run.scans if scan.cycle > shown),
             depth=None if read_back == NOT_READ else self._depth(
-                number if read_back is None else read_back),
+                number if read_back is None else read_back, table),
             resolution=self._resolution,
             work=[Work(node, domain["first"], domain["units"], int(fragments), int(busy))
                   for (node, *_), domain, fragments, busy in zip(
@@ -160,6 +179,8 @@ class Answers:
             sent=self.sent[reading].tolist() if read else [],
             taken=self.taken[reading].tolist() if read else [],
             followed=self.followed[reading].tolist() if read else [],
+            slot_counts=self.slot_counts[counted] if read and len(self.slot_counts) else None,
+            next_table=self.tables[counted] if read and len(self.tables) else None,
             owned=units["owned"],
             total=units["total"],
             boot_cycles=self._values[ResponseKind.BOOTED][0],
@@ -174,8 +195,8 @@ class Answers:
             activity=run.activity[reading] if run.activity and read else None,
         )
 
-    def _depth(self, read_back: int) -> NDArray[np.int64]:
+    def _depth(self, read_back: int, table: NDArray[np.int64] | None) -> NDArray[np.int64]:
         words = self._organisation.depths_read_back
         begin = words * read_back
-        return self._organisation.depth_image(
+        return self._organisation.dealt(table).depth_image(
             self._values[ResponseKind.DEPTH][begin:begin + words])

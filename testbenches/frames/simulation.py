@@ -7,6 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -27,14 +30,15 @@ def simulate(
     waveform: Path | None = None,
     progress: Progress | None = None,
     fraction_bits: int | None = None,
+    table: NDArray[np.int64] | None = None,
 ) -> Simulation:
     """Boot the machine, draw one frame, watch it on the video pins, read its depths back.
 
-    ``fraction_bits`` as in ``frame_commands``.
+    ``fraction_bits`` and ``table`` as in ``frame_commands``.
     """
     job = frame_job(configuration, display_list, memory_seed=memory_seed, stall_seed=stall_seed,
-                    waveform=waveform, fraction_bits=fraction_bits)
-    return Answers(configuration, engine.run(job, progress)).frame(0, reading=0)
+                    waveform=waveform, fraction_bits=fraction_bits, table=table)
+    return Answers(configuration, engine.run(job, progress)).frame(0, reading=0, table=table)
 
 
 def simulate_frame(configuration: MachineConfiguration, display_list: DisplayList, *,

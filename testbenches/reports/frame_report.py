@@ -16,6 +16,7 @@ from .card_groups import card_groups
 from .frame_facts import report_facts
 from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
 from .page import page_environment
+from .region_pictures import load_chart, region_picture
 from .work_chart import work_chart
 
 #: About as wide as a picture is on the page.
@@ -63,6 +64,7 @@ def report_page(rendering: Rendering, facts: dict[str, Any], template: str = "re
         **more,
         chart=work_chart(rendering.simulation.work),
         activity_charts=_activity_charts(rendering),
+        region_pictures=_region_pictures(rendering, facts),
         activity_kinds=ACTIVITY_KINDS,
         groups=card_groups(rendering.configuration),
         display_list=_display_list_facts(rendering),
@@ -73,6 +75,14 @@ def report_page(rendering: Rendering, facts: dict[str, Any], template: str = "re
 def _activity_charts(rendering: Rendering) -> list[str]:
     record = rendering.simulation.activity
     return [] if record is None else [activity_chart(record), timeline_chart(record)]
+
+
+def _region_pictures(rendering: Rendering, facts: dict[str, Any]) -> list[str]:
+    """Who drew which region, and the work of each."""
+    if rendering.regions is None:
+        return []
+    return [data_uri(region_picture(rendering.regions, rendering.simulation.video)),
+            load_chart(facts["regions"])]
 
 
 def _is_exact(rendering: Rendering) -> bool:

@@ -9,6 +9,7 @@ from ...golden.scenes.camera import View
 from ..frames.rendering import Rendering
 from ..sequence.sequence_run import SequenceFrame
 from .frame_facts import report_facts
+from .region_facts import region_summary
 
 
 def sequence_facts(rendering: Rendering, frames: Sequence[SequenceFrame], views: Sequence[View]
@@ -67,4 +68,5 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
         "per_pe": [{"fragments": element.fragments, "busy": element.busy_cycles}
                    for element in work],
         "sent": list(simulation.sent),
+        "regions": None if frame.regions is None else region_summary(frame.regions),
     }

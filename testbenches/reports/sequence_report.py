@@ -18,6 +18,7 @@ from ..sequence.sequence_run import SequenceFrame
 from .frame_pictures import data_uri
 from .frame_report import REPORT_FILES, report_page, write_files
 from .page import chart_style, svg_element
+from .region_pictures import region_picture, utilisation_chart
 from .sequence_facts import sequence_facts
 from .work_chart import BUSY_COLOR, FRAGMENTS_COLOR
 
@@ -44,6 +45,12 @@ def write_sequence_report(rendering: Rendering, frames: Sequence[SequenceFrame],
         animation=f"data:image/png;base64,{base64.b64encode(animation).decode()}",
         strip=[(frames[place].number, data_uri(frames[place].simulation.video))
                for place in strip_places(len(frames))],
+        region_strip=[(frame.number, data_uri(region_picture(frame.regions,
+                                                             frame.simulation.video)))
+                      for frame in map(frames.__getitem__, strip_places(len(frames)))
+                      if frame.regions is not None],
+        utilisation_chart=(utilisation_chart(facts["frames"])
+                           if rendering.regions is not None else None),
         sequence_chart=sequence_chart(facts["frames"], facts["machine"]["cycles_per_scan"]))
     write_files(rendering, folder, facts, page)
 

@@ -27,6 +27,8 @@ from ..engines.engine import EngineRun, Job, Progress
 from ..frames.compare import Comparison, compare
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.region_figures import RegionFigures, RegionTables
+from ..frames.region_host import region_readings
 from ..frames.responses import NOT_READ, Answers, MachineError, Simulation
 from ..frames.simulation import engine_errors
 
@@ -44,7 +46,8 @@ class SequenceCommands(Sequence[int]):
     """The host's commands for all pictures, each picture's made when they are asked for.
 
     Depths and counters are read after the last picture, or after each.  ``starts`` are the places
-    of the ``FRAME_START`` of those that have been asked for one after another.
+    of the ``FRAME_START`` of those that have been asked for one after another.  ``tables`` are
+    those by which regions are dealt out for each, if they are.
     """
 
     def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList],
@@ -52,10 +55,13 @@ class SequenceCommands(Sequence[int]):
         self.starts: list[int] = []
         self._configuration = configuration
         self._lists = lists
-        self._readings = {_READ_DEPTH: depths, _READ_COUNTERS: counters}
+        self._readings = _readings(configuration, depths, counters)
+        self.tables = (None if configuration.regions is None
+                       else RegionTables(configuration, lists))
 
     def of(self, number: int) -> list[int]:
-        words = frame_commands(self._configuration, self._lists[number])
+        words = frame_commands(self._configuration, self._lists[number],
+                               table=None if self.tables is None else self.tables.sent(number))
         return [*words, *(word for word, whose in self._readings.items()
                           if whose == "all" or number == len(self._lists) - 1)]
 
@@ -76,6 +82,13 @@ class SequenceCommands(Sequence[int]):
         return list(self)[place]
 
 
+def _readings(configuration: MachineConfiguration, depths: Reading, counters: Reading
+              ) -> dict[int, Reading]:
+    """After which pictures each of these commands is sent."""
+    return {_READ_DEPTH: depths, _READ_COUNTERS: counters,
+            **dict.fromkeys(region_readings(configuration), counters)}
+
+
 @dataclass(frozen=True, eq=False)
 class SequenceFrame:
     """One picture of a sequence, as it left the machine, judged.
@@ -86,6 +99,7 @@ class SequenceFrame:
     ``scans``       on how many it was seen; of the last picture, how many were waited for
     ``wrong_scans`` those of them that do not show the golden picture
     ``shown``       the clock in which the machine said that it is shown
+    ``regions``     what its regions cost; None where none are dealt out
     """
 
     number: int
@@ -96,6 +110,7 @@ class SequenceFrame:
     scans: int
     wrong_scans: int
     shown: int
+    regions: RegionFigures | None = None
 
     @property
     def equal(self) -> bool:
@@ -117,23 +132,25 @@ def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[Displ
     """
     frames = len(lists)
     often = [commands.command(Opcode.FRAME_END)] * frames
-    reads = [word for word, whose in ((_READ_DEPTH, depths), (_READ_COUNTERS, counters))
+    reads = [word for word, whose in _readings(configuration, depths, counters).items()
              for _ in range(frames if whose == "all" else 1)]
     words = SequenceCommands(configuration, lists, depths, counters)
+    others = _OTHERS + (0 if configuration.regions is None else configuration.dealt_regions.count)
     job = Job(
         configuration, words,
         responses_owed(organisation_of(configuration), [*often, *reads]),
         memory_seed=memory_seed, stall_seed=stall_seed,
-        maximum_cycles=frames * most_frame_clocks(configuration, triangles + _OTHERS))
+        maximum_cycles=frames * most_frame_clocks(configuration, triangles + others))
     with engine_errors(engine):
         run = make_engine(engine).run(job, progress)
     assert run.accepted is not None
-    return _judged(configuration, lists, run, run.accepted[words.starts], depths, counters)
+    return _judged(configuration, lists, run, run.accepted[words.starts], words.tables, depths,
+                   counters)
 
 
 def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], run: EngineRun,
-            starts: NDArray[np.int64], depths: Reading, counters: Reading
-            ) -> Iterator[SequenceFrame]:
+            starts: NDArray[np.int64], tables: RegionTables | None, depths: Reading,
+            counters: Reading) -> Iterator[SequenceFrame]:
     """``starts``: the clock in which the machine took each picture's start, the first being 1."""
     answers = Answers(configuration, run)
     scan_clocks = configuration.cycles_per_scan
@@ -148,7 +165,8 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
         raise MachineError("something was seen before the first picture was shown")
     for number, display_list in enumerate(lists):
         last = number == len(lists) - 1
-        simulation = answers.frame(number, **{
+        table = None if tables is None else tables.table(number)
+        simulation = answers.frame(number, table=table, **{
             name: number if whose == "all" else 0 if last else NOT_READ
             for name, whose in (("reading", counters), ("read_back", depths))})
         seen = range(first[number], ends[number])
@@ -159,4 +177,5 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
         different = [(scans[scan] != comparison.expected).any(axis=2) & ~comparison.color_orphans
                      for scan in seen]
         yield SequenceFrame(number, display_list.triangles, simulation, comparison, seen[0],
-                            len(seen), sum(map(bool, map(np.any, different))), shown[number][1])
+                            len(seen), sum(map(bool, map(np.any, different))), shown[number][1],
+                            None if tables is None else tables.figures(number, simulation))

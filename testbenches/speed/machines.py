@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 from ...golden.planning.on_screen_widths import on_screen_widths
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.regions import Balance
 from ..machine_options import SETUPS, SetupChoice
 from .cases import DEPTH_BITS, SIZE, SUB_BITS
 
@@ -25,6 +27,9 @@ class MachineAxes:
     ``skew``      units of a processing element alternate along its rows, too: all machines, none,
                   or None: those whose units have one port, where blocks are of one pixel
     ``fifos``     triangles that a processing element can hold in waiting
+    ``regions``   columns and rows of regions of the screen that are dealt out to processing
+                  elements, by what the same picture costs them; None interlaces pixels
+    ``balances``  what is counted of regions
     """
 
     elements: Sequence[int] = (1, 16)
@@ -34,6 +39,8 @@ class MachineAxes:
     blocks: Sequence[int] = (1,)
     skew: bool | None = None
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
+    regions: Sequence[tuple[int, int] | None] = (None,)
+    balances: Sequence[Balance] = (MachineConfiguration.balance,)
 
 
 #: The machines of ``cardcage bench --all``.
@@ -54,6 +61,7 @@ class BenchMachine:
     skew: bool
     fifo: int
     configuration: MachineConfiguration
+    regions: tuple[int, int] | None = None
 
     @property
     def label(self) -> str:
@@ -66,6 +74,9 @@ class BenchMachine:
             words.append("skewed")
         if self.fifo != MachineConfiguration.fifo_depth:
             words.append(f"FIFO of {self.fifo}")
+        if self.regions is not None:
+            columns, rows = self.regions
+            words.append(f"{columns}x{rows} regions, {self.configuration.balance}")
         return ", ".join(words)
 
 
@@ -73,7 +84,8 @@ def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
     """Every combination of ``axes``.  Raises ``InputError`` where there is no such machine."""
     return [_machine(*chosen) for chosen in product(
         axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, (axes.skew,),
-        axes.fifos)]
+        axes.fifos, [(regions, balance) for regions in axes.regions
+                     for balance in (axes.balances if regions else axes.balances[:1])])]
 
 
 def varied(machines: Sequence[BenchMachine]) -> list[str]:
@@ -83,13 +95,16 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
 
 
 def _machine(elements: int, units: int, ports: int, setup: SetupChoice, block: int,
-             skew: bool | None, fifo: int) -> BenchMachine:
+             skew: bool | None, fifo: int,
+             dealing: tuple[tuple[int, int] | None, Balance]) -> BenchMachine:
+    regions, balance = dealing
     if skew is None:
-        skew = ports == 1 and units > 1 and block == 1
+        skew = ports == 1 and units > 1 and block == 1 and regions is None
+    dealt: dict[str, Any] = {} if regions is None else {"regions": regions, "balance": balance}
     configuration = MachineConfiguration(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        memory_ports=ports, block=block, skew=skew, **SETUPS[setup],
+        memory_ports=ports, block=block, skew=skew, **SETUPS[setup], **dealt,
         **on_screen_widths(SIZE, SIZE, SUB_BITS))
-    return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration)
+    return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration, regions)

@@ -8,6 +8,9 @@ The machine takes ``READ_COUNTERS`` only when every processing element has
 finished, its last write included; so T(n) is the time from the clock in which it
 takes the first of n triangles to the clock in which it takes the counters'
 command, a few clocks after the last write.  These few are in T(n) and T(2n) alike.
+
+Where regions of the screen are dealt out, the frame is drawn by a table that was packed by what
+the very same frame costs: as the next one of a picture that stands still.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
@@ -28,9 +32,13 @@ from ..engines.engine import Engine, EngineRun, Job, Progress
 from ..frames.compare import compare
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.region_figures import RegionFigures, RegionTables
+from ..frames.region_host import region_readings, table_commands
 from ..frames.responses import Answers, MachineError
 from ..frames.simulation import engine_errors
 from .cases import CaseLists, Order
+
+Int64 = NDArray[np.int64]
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
 _READ_DEPTH = commands.command(Opcode.READ_DEPTH)
@@ -50,6 +58,7 @@ class Measurement:
     ``element_fragments``  of 2n triangles, per processing element
     ``seconds``            its share of the simulation, compiling not counted
     ``activity``           what the processing elements did in T(2n); None where nothing tells
+    ``regions``            what regions cost that are dealt out, of both; None where there are none
     """
 
     case: str
@@ -61,6 +70,7 @@ class Measurement:
     element_fragments: tuple[int, ...]
     seconds: float
     activity: ActivityRecord | None = None
+    regions: RegionFigures | None = None
 
     @property
     def sustained_cycles(self) -> int:
@@ -102,6 +112,7 @@ class _Frame:
     start: int
     triangles_once: int
     triangles_twice: int
+    tables: RegionTables | None
 
     @property
     def first(self) -> tuple[int, int]:
@@ -130,6 +141,18 @@ def measure(configuration: MachineConfiguration, cases: Sequence[CaseLists], eng
             for number, frame in enumerate(frames)]
 
 
+def packed_tables(configuration: MachineConfiguration, case: CaseLists) -> RegionTables | None:
+    """The second one is that by which a case is drawn; None where no regions are dealt out."""
+    return (None if configuration.regions is None else
+            RegionTables(configuration, [case.frame] * 2))
+
+
+def packed_table_of(configuration: MachineConfiguration, case: CaseLists) -> Int64 | None:
+    """int64 (regions,): the table by which a case is drawn; None where there are no regions."""
+    tables = packed_tables(configuration, case)
+    return None if tables is None else tables.table(1)
+
+
 def _job(configuration: MachineConfiguration,
          cases: Sequence[CaseLists]) -> tuple[Job, list[_Frame]]:
     words: list[int] = []
@@ -137,9 +160,12 @@ def _job(configuration: MachineConfiguration,
     for case in cases:
         start, *once, end = frame_commands(configuration, case.once)
         _, *twice, _ = frame_commands(configuration, case.twice)
-        frames.append(_Frame(case, len(words), len(once), len(twice)))
+        tables = packed_tables(configuration, case)
+        if tables is not None:
+            words += table_commands(configuration, tables.table(1))
+        frames.append(_Frame(case, len(words), len(once), len(twice), tables))
         words += [start, _READ_COUNTERS, *once, _READ_COUNTERS, *twice, _READ_COUNTERS, end,
-                  _READ_DEPTH]
+                  _READ_DEPTH, *region_readings(configuration)]
     return Job(
         configuration=configuration,
         commands=words,
@@ -154,7 +180,9 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
     case = frame.case
     # Each record of activity, too, ends as the counters are read.
     readings = range(_READINGS * number, _READINGS * (number + 1))
-    simulation = answers.frame(number, reading=readings[-1])
+    tables = frame.tables
+    simulation = answers.frame(number, reading=readings[-1], counted=number,
+                               table=None if tables is None else tables.table(1))
     shifts = organisation_of(configuration).resolution.shifts
     fragments = [int(depth_complexity(part, **shifts).sum()) for part in (case.once, case.twice)]
     where = f"{case.name}, {case.order} order, on {configuration.cards}"
@@ -167,9 +195,12 @@ def _measurement(configuration: MachineConfiguration, frame: _Frame, number: int
     drawn = np.diff(counts.sum(axis=1))
     if drawn.tolist() != fragments:
         raise DifferentError(f"{where}: {drawn.tolist()} fragments drawn, not {fragments}")
+    regions = None if tables is None else tables.figures(1, simulation)
+    if regions is not None and regions.differences:
+        raise DifferentError(f"{where}: {regions.differences[0]}")
     assert run.accepted is not None
     once, twice = (int(run.accepted[barrier] - run.accepted[first])
                    for first, barrier in zip(frame.first, frame.barriers, strict=True))
     return Measurement(case.name, case.order, case.once.triangles, fragments[0], once, twice,
                        tuple((counts[-1] - counts[-2]).tolist()), run.seconds / answers.frames,
-                       simulation.activity)
+                       simulation.activity, regions)

@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 
 from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
 from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
+from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.engine import Engine
 from ..frames.setup_timing import setup_timing
 from ..machine_options import MachineOptions
 from .cases import AS_IT_IS, CaseLists, Order, case_lists
 from .machines import BenchMachine
-from .measure import Measurement, measure
+from .measure import Measurement, measure, packed_table_of
 
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
@@ -95,7 +96,7 @@ def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> 
     """How often the list must be repeated, so that every unit is scanned about as often."""
     if prediction.binding != "busiest port":
         return 1
-    rows = max(_LEAST_ROWS, 2 * len(scan_shares(configuration)))
+    rows = max(_LEAST_ROWS, 2 * len(scan_shares(organisation_of(configuration))))
     return math.ceil(rows * clocks_per_row(configuration) / prediction.bound)
 
 
@@ -103,12 +104,14 @@ def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, Bench
     """``case``, longer where it must be, and what the model says of that."""
     configuration = machine.configuration
     setup = setup_timing(configuration)
+    table = packed_table_of(configuration, case)
     began = time.perf_counter()
-    once = predict_cycles(configuration, case.once, setup=setup)
+    once = predict_cycles(configuration, case.once, setup=setup, table=table)
     if (times := _times(configuration, once)) > 1:
         case = case.repeated(times)
-        once = predict_cycles(configuration, case.once, setup=setup)
-    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
+        table = packed_table_of(configuration, case)
+        once = predict_cycles(configuration, case.once, setup=setup, table=table)
+    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup, table=table)
     seconds = time.perf_counter() - began
     return case, BenchRow(
         machine, case.title, case.order, case.once.triangles, measured=None,

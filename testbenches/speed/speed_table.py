@@ -11,6 +11,7 @@ from rich.table import Table
 
 from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS
+from ..reports.region_facts import region_summary
 from .cases import Order, peers
 from .speed_rows import BenchRow
 
@@ -54,12 +55,20 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     def title(row: BenchRow) -> str:
         return f"{row.machine.label}; {TITLES[row.order]}"
 
-    tables = []
+    tables: list[tuple[str, list[tuple[str, ...]]]] = []
     for name, group in groupby(rows, title):
         some = list(group)
         tables.append((name, [_header(some[0].measured is not None), *map(_cells, some)]))
         observed = [(row.case, row.measured.activity.shares()) for row in some
                     if row.measured is not None and row.measured.activity is not None]
+        dealt = [(row.case, row.measured.regions) for row in some
+                 if row.measured is not None and row.measured.regions is not None]
+        if dealt:
+            tables.append(("  how evenly the regions are dealt out, as they are counted", [
+                ("case", "utilisation", "busiest element", "of"),
+                *((case, f"{100 * regions.utilisation:.1f} %", str(regions.busiest),
+                   f"{int(regions.loads.max()):,} {regions.counted}")
+                  for case, regions in dealt)]))
         if observed:
             header = ("case", *(kind.name.replace("_", " ") for kind in ACTIVITY_KINDS))
             tables.append(("  where the processing elements' clocks went, in %", [
@@ -125,6 +134,8 @@ def _facts(row: BenchRow) -> dict[str, Any]:
                     "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
                     "skew": machine.skew,
                     "fifo_depth": machine.fifo,
+                    "regions": machine.regions,
+                    "balance": machine.configuration.balance if machine.regions else None,
                     "scan_reads_per_line":
                         organisation_of(machine.configuration).scan_reads_per_line,
                     "fraction_bits": machine.configuration.fraction_bits},
@@ -152,6 +163,8 @@ def _facts(row: BenchRow) -> dict[str, Any]:
             "element_fragments": list(measured.element_fragments),
             "prediction_error": row.prediction_error,
         }
+        if measured.regions is not None:
+            facts["regions"] = region_summary(measured.regions)
         if measured.activity is not None:
             facts["clocks_of_elements"] = measured.activity.shares()
     return facts

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ....golden.organisations.organisation_of import organisation_of
 from ...frames.compare import FirstDifference
+from ...frames.region_figures import RegionFigures
 from ...frames.rendering import Rendering
 from ...render_frames import FramesRendering
 
@@ -18,6 +21,7 @@ def render_summary(rendering: Rendering) -> str:
               f"triangles, {rendering.fragments:,} fragments at "
               f"{width}x{height}"),
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
+        *([] if rendering.regions is None else [_line("regions", _regions([rendering.regions]))]),
         _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw"
               + ("" if simulation.merge_cycles is None else
                  f", {simulation.merge_cycles - simulation.draw_cycles:,} to merge") + "; "
@@ -63,6 +67,22 @@ def _first(difference: FirstDifference) -> str:
             f"got {got.color} depth {got.depth}; {len(difference.fragments)} fragments fell on it")
 
 
+def _regions(figures: Sequence[RegionFigures]) -> str:
+    """How they were dealt out, and how evenly."""
+    configuration, counted = figures[0].configuration, figures[0].counted
+    regions = configuration.dealt_regions
+    shares = sorted(each.utilisation for each in figures)
+    balance = {"static": "one table"}.get(
+        configuration.balance, f"balanced by {counted}, by the {configuration.balancer}")
+    span = (f"{100 * shares[0]:.0f} %" if len(shares) == 1 else
+            f"{100 * shares[0]:.0f} to {100 * shares[-1]:.0f} %, "
+            f"{100 * sum(shares) / len(shares):.0f} % on average")
+    wrong = sum(bool(each.differences) for each in figures)
+    return (f"{regions.columns}x{regions.rows} of {1 << regions.x_bits}x{1 << regions.y_bits} "
+            f"pixels, {balance}; utilisation {span}"
+            + (f"; COUNTS DIFFER in {wrong:,} pictures" if wrong else ""))
+
+
 def frames_summary(rendering: FramesRendering) -> str:
     """The same of a sequence of pictures."""
     frames, shown = rendering.frames, rendering.shown
@@ -81,6 +101,8 @@ def frames_summary(rendering: FramesRendering) -> str:
         _line("scene", f"{shown.scene.name}: {min(frame.triangles for frame in frames):,} to "
               f"{max(frame.triangles for frame in frames):,} triangles"),
         _line("machine", f"{shown.configuration.cards}, {_precision(shown)}"),
+        *([] if shown.regions is None else [_line("regions", _regions(
+            [frame.regions for frame in frames if frame.regions is not None]))]),
         _line("cycles", f"{min(draw):,} to {max(draw):,} to draw a picture; {simulation.cycles:,} "
               f"simulated by {simulation.engine} in {simulation.seconds:.1f} s"
               + (f", after {simulation.build_seconds:.0f} s of compiling the model"

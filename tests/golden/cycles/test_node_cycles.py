@@ -135,10 +135,11 @@ def test_a_full_node_is_passed_by():
 def test_the_scan_reads_all_nodes_of_a_chain_and_one_of_a_tree():
     machines = {merge: wide_machine(scene(0), cards=f"3x(PMMPMM{merge})") for merge in "CT"}
     alone = wide_machine(scene(0), cards="PMMPMM")
-    shares = scan_shares(alone)
+    shares = scan_shares(organisation_of(alone))
+    of = {card: scan_shares(organisation_of(machine)) for card, machine in machines.items()}
     assert (shares.sum(axis=2) > 0).all()
-    np.testing.assert_array_equal(scan_shares(machines["C"]), np.concatenate([shares] * 3, axis=1))
-    np.testing.assert_array_equal(scan_shares(machines["T"]),
+    np.testing.assert_array_equal(of["C"], np.concatenate([shares] * 3, axis=1))
+    np.testing.assert_array_equal(of["T"],
                                   np.concatenate([shares, 0 * shares, 0 * shares], axis=1))
     for node in range(3):
         assert scan_share(machines["C"], node) == scan_share(alone)

@@ -26,7 +26,7 @@ def test_written_fragments():
     listed = scene(3, n=150)
     configuration = wide_machine(listed, cards="PM", clocks_per_pixel=256)
     triangles, parts = spans_of(configuration, listed)
-    ports = PortAccesses(configuration, listed, triangles)
+    ports = PortAccesses(organisation_of(configuration), listed, triangles)
     reads, writes, clocks = sum(ports.of(part).sum(axis=(0, 2)) for part in parts)
     nearest = np.full((28, 40), configuration.depth_background)
     written = 0
@@ -56,7 +56,7 @@ def test_share_of_the_scan(cards, options):
             lanes = {(owner(machine, unit), unit % depth_lanes(machine)) for unit in units}
             for element, lane in lanes:
                 taken[y, element, lane] += 1
-    shares = scan_shares(machine)
+    shares = scan_shares(organisation_of(machine))
     line = machine.timing.pixels / 24 * 4
     found = shares[np.arange(24) % len(shares)] * line
     np.testing.assert_allclose(found, taken)
@@ -95,7 +95,7 @@ def lanes_by_clock(spans, waiting):
 
 def through_lanes(machine, reads, writes, found):
     """Clocks of each span, which may come when it is found, and then until all is done."""
-    lanes, now = ElementLanes(machine, scan_shares(machine)[:, 0]), 0.0
+    lanes, now = ElementLanes(machine, scan_shares(organisation_of(machine))[:, 0]), 0.0
     clocks, left = [], []
     for place, earliest in enumerate(found):
         begin = max(now, earliest)
@@ -164,7 +164,8 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
 
     monkeypatch.setattr("cardcage.golden.cycles.one_port_element.scan_shares",
                         lambda _: np.zeros((1, 2, 2)))
-    one, two = OnePort(configuration, Hidden(), pipeline), TwoPorts(configuration, pipeline)
+    one = OnePort(organisation_of(configuration), Hidden(), pipeline)
+    two = TwoPorts(configuration.processing_elements, pipeline)
     costs = zip(one.costs(entries, spans), two.costs(entries, spans), strict=True)
     loads, held = np.zeros((2, 2)), 0
     for element, walk, cost in zip(entries.element, entries.walk, costs, strict=True):
@@ -191,7 +192,7 @@ def test_each_row_costs_its_span_and_an_end_without_one_nothing():
             numbers = np.arange(len(spans.length)) * spans.squares
             return numbers[:, np.newaxis, np.newaxis] * np.ones((1, 3, 2))
 
-    costs = OnePort(configuration, Numbers(), pipeline).costs(entries, spans)
+    costs = OnePort(organisation_of(configuration), Numbers(), pipeline).costs(entries, spans)
     found = [(pair, offset, -1 if accesses is None else accesses[1][1])
              for pair, cost in enumerate(costs) for offset, accesses in cost]
     assert found == list(zip(entries.pair.tolist(), entries.offset.tolist(),

@@ -1,0 +1,1 @@
+"""How many clocks machines take whose processing elements draw regions of the screen."""
