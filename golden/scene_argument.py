@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from .scenes.built_in.capsid import capsid, capsid_triangles
+from .scenes.built_in.head import head, head_triangles
 from .scenes.built_in.sphereflake import sphereflake, sphereflake_triangles
 from .scenes.built_in.spheres import spheres, spheres_triangles
 from .scenes.built_in.teapot import teapot, teapot_triangles
@@ -197,6 +199,23 @@ BUILT_INS: Final[dict[str, BuiltIn]] = {
             ),
             terrain_triangles,
             terrain,
+        ),
+        BuiltIn(
+            "head",
+            "a head (in place of the one of Ellsworth 1994)",
+            (Parameter("tessellation", 12, 1, 500, "parts of an edge of an octahedron"),),
+            head_triangles,
+            head,
+        ),
+        BuiltIn(
+            "capsid",
+            "balls on a sphere, as a virus' shell (in place of the one of Ellsworth 1994)",
+            (
+                Parameter("count", 32, 1, 2048, "number of balls"),
+                Parameter("depth", 2, 0, 8, "subdivisions of each ball's octahedron"),
+            ),
+            capsid_triangles,
+            capsid,
         ),
         BuiltIn(
             "random",

@@ -23,6 +23,7 @@ class RegionCounts(wiring.Component):
     Members
     -------
     row: In(visited_row_layout)
+        A row that has been walked, if it is ``valid``.
     clear: In(1)
         Every count is 0 from the next clock on.
     start: In(1)
@@ -82,7 +83,7 @@ class RegionCounts(wiring.Component):
             self.done.eq(free & (place == slots)),
             read.addr.eq(Mux(reporting, place, slot)),
         ]
-        m.d.sync += [known.eq(counted.bit_select(read.addr, 1)), asked.eq(asks)]
+        m.d.sync += [known.eq(Array(counted)[read.addr]), asked.eq(asks)]
         with m.If(adds):
             m.d.sync += counted.bit_select(adds_to, 1).eq(1)
         with m.If(self.clear):

@@ -31,7 +31,8 @@ def counts(case, balance):
 
 @pytest.mark.parametrize(("machine", "seed", "balance", "ports"), [
     ("squares", 0, "clocks", 1), ("squares", 2, "triangles", 2), ("wide", 1, "triangles", 1),
-    ("columns", 2, "static", 2), ("rows", 3, "clocks", 2), ("few", 1, "clocks", 1)])
+    ("columns", 2, "static", 2), ("rows", 3, "clocks", 2), ("few", 1, "clocks", 1),
+    ("one each", 2, "clocks", 2)])
 def test_boot_frames_and_their_reports(machine, seed, balance, ports):
     plain = region_machine(machine)
     lists = [random_triangles(f"{machine} {seed} {frame}", 12, width=plain.width,

@@ -10,19 +10,24 @@ from cardcage.golden.organisations.region_table import slots_of
 from .bench import Agent
 from .pictures import prepare, prepared_values, small_machine
 
-#: Cards, picture, columns and rows of regions: squares, strips, one row or column at the edge.
+#: Cards, picture, columns and rows of regions, slots (0: as many as there are by themselves):
+#: squares, strips, regions that reach beyond the picture, one region for each element.
 MACHINES = {
-    "squares": ("3x(PM)", (32, 32), (8, 8)),
-    "wide": ("2x(PMM)", (37, 19), (5, 10)),
-    "columns": ("3x(PM)", (24, 20), (12, 1)),
-    "rows": ("4x(PM)", (20, 24), (1, 12)),
-    "few": ("2x(PMMMM)", (16, 9), (2, 2)),
+    "squares": ("3x(PM)", (32, 32), (8, 8), 0),
+    "wide": ("2x(PMM)", (37, 19), (5, 10), 25),
+    "columns": ("3x(PM)", (24, 20), (12, 1), 0),
+    "rows": ("4x(PM)", (20, 24), (1, 12), 0),
+    "few": ("2x(PMMMM)", (16, 9), (2, 2), 0),
+    "one each": ("4x(PM)", (16, 16), (2, 2), 1),
 }
+
+#: Where no box is large.
+NEVER_LARGE = ("few", "one each")
 
 
 def region_machine(name, **changes):
-    cards, size, regions = MACHINES[name]
-    return small_machine(cards, *size, regions=regions, **changes)
+    cards, size, regions, slots = MACHINES[name]
+    return small_machine(cards, *size, regions=regions, **{"slots": slots} | changes)
 
 
 def random_table(configuration, seed):
