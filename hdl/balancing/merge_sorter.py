@@ -44,6 +44,9 @@ class MergeSorter(wiring.Component):
         self.items = items
         self.passes = max(1, (items - 1).bit_length())
         self.layout = data.StructLayout({"weight": weight_bits, "label": label})
+        # Each half has a power of two of places, so that the half is a bit of the address.
+        self.storage = memory.Memory(shape=self.layout, depth=2 << self.passes, init=[],
+                                     attrs={"no_rw_check": 1})
         super().__init__({
             "put": In(1),
             "item": In(self.layout),
@@ -58,10 +61,8 @@ class MergeSorter(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        # Each half has a power of two of places, so that the half is a bit of the address.
-        m.submodules.storage = storage = memory.Memory(
-            shape=self.layout, depth=2 << self.passes, init=[], attrs={"no_rw_check": 1})
-        write, read = storage.write_port(), storage.read_port()
+        m.submodules.storage = self.storage
+        write, read = self.storage.write_port(), self.storage.read_port()
 
         half = Signal()  # the one that is merged
         place = Signal(self.passes)  # of the item that is written or given
