@@ -1,7 +1,7 @@
 """Spans of random triangles in the regions of a random table: every covered pixel there, once."""
 
 import pytest
-from hdl_bench.bench import Drive, Until, Watch, simulate
+from hdl_bench.bench import Until, Watch, simulate
 from hdl_bench.pictures import covered, random_triangles
 from hdl_bench.regions import MACHINES, Deal, Dealt, random_table, region_machine
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
