@@ -20,8 +20,8 @@ _FACTORS = (0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0)
 
 
 def region_chart(rows: Sequence[BenchRow], path: Path) -> None:
-    """Write a PNG: a group of bars for each case and order, a bar for each machine with regions: how
-    many times as fast it is as one that interlaces pixels and is like it otherwise.
+    """Write a PNG: a group of bars for each case and order, a bar for each machine with regions:
+    how many times as fast it is as one that interlaces pixels and is like it otherwise.
 
     Simulated bars are full, predicted ones hatched.
     """
