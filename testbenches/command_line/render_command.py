@@ -42,8 +42,8 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None,
     """Draw SCENE on a simulated machine and compare every pixel with the golden model.
 
     SCENE is a mesh (.obj .stl .ply .glb .gltf), a scene file (.scene), a saved display list
-    (.npz), a hard case (hard:NAME) or a built-in scene, with arguments if need be.  The report goes to DIR:
-    open report.html.
+    (.npz), a hard case (hard:NAME) or a built-in scene, with arguments if need be.  The report
+    goes to DIR: open report.html.
 
     \b
     Examples:
