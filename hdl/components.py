@@ -27,6 +27,7 @@ from .balancing.least_loaded import LeastLoaded
 from .balancing.merge_sorter import MergeSorter
 from .balancing.region_order import RegionOrder, region_shape
 from .controller.frame_tags import FrameTags
+from .controller.region_table import RegionTable
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
@@ -41,6 +42,7 @@ from .machine import BOARDS, boards_of
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
 from .mapping.region_address import RegionAddress
+from .mapping.region_scan import RegionScanAddress
 from .mapping.unit_pixel import UnitPixel
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
@@ -78,6 +80,7 @@ from .triangle_setup.result_queue import ResultQueue
 from .triangle_setup.sampling_grid import SamplingGrid, grid_layout
 from .triangle_setup.triangle_setup import TriangleSetup
 from .triangle_setup.vertex_sort import VertexSort
+from .video.region_places import RegionPlaces
 
 __all__ = ["COMPONENTS"]
 
@@ -216,8 +219,11 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "region_counts": partial(_dealt, RegionCounts),
     "region_order": partial(_dealt, lambda configuration: RegionOrder(
         **_regions(configuration), **_packing(configuration))),
+    "region_places": partial(_dealt, RegionPlaces),
     "region_rows": partial(_dealt, RegionRows),
+    "region_scan_address": partial(_dealt, RegionScanAddress),
     "region_spans": partial(_dealt, RegionSpans),
+    "region_table": partial(_dealt, RegionTable),
     "region_visits": partial(_dealt, RegionVisits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),

@@ -19,7 +19,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
@@ -37,8 +36,6 @@ from ..frames.region_host import region_readings, table_commands
 from ..frames.responses import Answers, MachineError
 from ..frames.simulation import engine_errors
 from .cases import CaseLists, Order
-
-Int64 = NDArray[np.int64]
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)
 _READ_DEPTH = commands.command(Opcode.READ_DEPTH)
@@ -145,12 +142,6 @@ def packed_tables(configuration: MachineConfiguration, case: CaseLists) -> Regio
     """The second one is that by which a case is drawn; None where no regions are dealt out."""
     return (None if configuration.regions is None else
             RegionTables(configuration, [case.frame] * 2))
-
-
-def packed_table_of(configuration: MachineConfiguration, case: CaseLists) -> Int64 | None:
-    """int64 (regions,): the table by which a case is drawn; None where there are no regions."""
-    tables = packed_tables(configuration, case)
-    return None if tables is None else tables.table(1)
 
 
 def _job(configuration: MachineConfiguration,

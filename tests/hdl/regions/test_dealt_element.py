@@ -11,22 +11,14 @@ from hdl_bench.element_card import (
     draw,
 )
 from hdl_bench.pictures import exact_words, prepare, prepared_values, random_triangles
-from hdl_bench.regions import DealFrames, Dealt, random_table, region_machine
+from hdl_bench.regions import DealFrames, random_table, region_machine
 from hdl_bench.streams import pauses
 
+from cardcage.golden.balancing.region_counts import region_counts
+from cardcage.golden.balancing.region_grid import RegionGrid
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.commands import ResponseKind
-
-
-def counts(case, balance):
-    """Of each slot."""
-    found = [0] * case.configuration.slots
-    for index in case.kept():
-        for visit in case.visits(index):
-            found[visit.slot] += 1 if balance == "triangles" else max(len(visit.rows),
-                                                                      visit.pixels)
-    return found
 
 
 @pytest.mark.parametrize(("machine", "seed", "balance", "ports"), [
@@ -60,8 +52,9 @@ def test_boot_frames_and_their_reports(machine, seed, balance, ports):
             first <= organisation.unit(x, y) < end for x, y in fragments)),
             (ResponseKind.BUSY, None)]
         if balance != "static":
-            expected += [(ResponseKind.REGION_COUNT, count) for count in counts(
-                Dealt(configuration, table, element, scene), balance)]
+            counts = region_counts(scene, RegionGrid.of(configuration.dealt_regions)).of(balance)
+            expected += [(ResponseKind.REGION_COUNT, 0 if region < 0 else counts[region])
+                         for region in organisation.region_at[element]]
     bench = Bench(configuration, first, end, packets, responses=len(expected), seed=seed,
                   scan=0.2 * seed, pause=pauses(seed) if seed else lambda: 0,
                   deal=lambda dut, announcer: DealFrames(dut, announcer, tables))

@@ -1,11 +1,15 @@
-"""Machines whose regions are dealt out, the lines that deal them, and visits by the definition."""
+"""Machines whose regions are dealt out, the lines that deal them, and visits as golden has them."""
 
 import random
 from dataclasses import dataclass
 
 import numpy as np
 
+from cardcage.golden.balancing.region_grid import RegionGrid
+from cardcage.golden.balancing.region_visits import region_visits
 from cardcage.golden.organisations.region_table import slots_of
+from cardcage.golden.reference.coverage import Triangles
+from cardcage.golden.specification.sampling_grid import Grid
 
 from .bench import Agent
 from .pictures import prepare, prepared_values, small_machine
@@ -152,6 +156,12 @@ class Dealt:
         self.prepared = prepare(configuration, display_list)
         self.values = prepared_values(configuration, self.prepared)
         self.boxes = [self._box(value) for value in self.values]
+        self._visits = [[] for _ in self.values]  # region, rows, fragments
+        for visits in region_visits(Triangles.of(display_list, Grid.of(display_list)),
+                                    RegionGrid.of(self.regions)):
+            for triangle, *visit in zip(visits.triangle, visits.region, visits.rows,
+                                        visits.fragments, strict=True):
+                self._visits[triangle].append(tuple(map(int, visit)))
 
     def _box(self, value):
         x, y = self.regions.x_bits, self.regions.y_bits
@@ -187,20 +197,20 @@ class Dealt:
         value, bits = self.values[index], self.regions.y_bits
         return range(max(value["top"], row << bits), min(value["bottom"], row + 1 << bits))
 
+    def extents(self, index, row):
+        """(y, first, beyond) of each."""
+        return [(y, *row_extent(self.prepared, index, y, self.configuration.width))
+                for y in self.band(index, row)]
+
     def visits(self, index):
-        left, right, top, bottom = self.boxes[index]
-        width, bits = self.configuration.width, self.regions.x_bits
-        found = []
-        for row in range(top, bottom + 1):
-            extents = [(y, *row_extent(self.prepared, index, y, width))
-                       for y in self.band(index, row)]
-            least = min(first for _, first, _ in extents)
-            most = max(beyond for *_, beyond in extents)
-            for column in range(left, right + 1):
-                begin, end = column << bits, column + 1 << bits
-                meets = least < most and begin < most and least < end
-                if self.own(column, row) and (meets or not self.large(index)):
-                    slot = int(self.slots[row * self.regions.columns + column])
-                    found.append(Visit(column, row, slot, tuple(
-                        (y, max(first, begin), min(beyond, end)) for y, first, beyond in extents)))
+        """Those that golden knows, its own ones; with the rows of each, from the exact edges."""
+        found, bits = [], self.regions.x_bits
+        for region, rows, fragments in self._visits[index]:
+            row, column = divmod(region, self.regions.columns)
+            if self.own(column, row):
+                visit = Visit(column, row, int(self.slots[region]), tuple(
+                    (y, max(first, column << bits), min(beyond, column + 1 << bits))
+                    for y, first, beyond in self.extents(index, row)))
+                assert (len(visit.rows), visit.pixels) == (rows, fragments)
+                found.append(visit)
         return found
