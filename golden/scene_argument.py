@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from .scenes.built_in.capsid import capsid, capsid_triangles
+from .scenes.built_in.head import head, head_triangles
 from .scenes.built_in.sphereflake import sphereflake, sphereflake_triangles
 from .scenes.built_in.spheres import spheres, spheres_triangles
 from .scenes.built_in.teapot import teapot, teapot_triangles
@@ -16,6 +18,8 @@ from .scenes.built_in.terrain import terrain, terrain_triangles
 from .scenes.built_in.tetra import tetra, tetra_triangles
 from .scenes.mesh import Mesh
 from .scenes.mesh_files.load_mesh import MESH_EXTENSIONS
+from .scenes.scene_files.examples import EXAMPLES, example_path
+from .scenes.scene_files.scene_file import SceneFile
 from .specification.errors import InputError
 
 DISPLAY_LIST_EXTENSION: Final = ".npz"
@@ -120,7 +124,15 @@ class HardCaseScene:
         return f"{HARD_CASE}:{self.case}"
 
 
-Scene = BuiltInScene | MeshFileScene | DisplayListScene | HardCaseScene
+@dataclass(frozen=True)
+class DescribedScene:
+    """A scene file, or one of the examples, not yet looked at; ``name`` is as it was asked for."""
+
+    path: Path
+    name: str
+
+
+Scene = BuiltInScene | MeshFileScene | DisplayListScene | HardCaseScene | DescribedScene
 
 
 @dataclass(frozen=True)
@@ -189,6 +201,23 @@ BUILT_INS: Final[dict[str, BuiltIn]] = {
             terrain,
         ),
         BuiltIn(
+            "head",
+            "a head (in place of the one of Ellsworth 1994)",
+            (Parameter("tessellation", 12, 1, 500, "parts of an edge of an octahedron"),),
+            head_triangles,
+            head,
+        ),
+        BuiltIn(
+            "capsid",
+            "balls on a sphere, as a virus' shell (in place of the one of Ellsworth 1994)",
+            (
+                Parameter("count", 32, 1, 2048, "number of balls"),
+                Parameter("depth", 2, 0, 8, "subdivisions of each ball's octahedron"),
+            ),
+            capsid_triangles,
+            capsid,
+        ),
+        BuiltIn(
             "random",
             "random triangles on the screen, each in a square box of a given size",
             (
@@ -204,10 +233,14 @@ BUILT_INS: Final[dict[str, BuiltIn]] = {
 
 
 def list_scenes() -> list[SceneListing]:
-    """The built-in scenes in the order in which they are shown to a user."""
+    """The built-in scenes, and then the examples of scene files, in the order in which they are
+    shown to a user."""
     return [
-        SceneListing(s.name, s.description, s.parameters, s.triangles(**s.defaults))
-        for s in BUILT_INS.values()
+        *(SceneListing(s.name, s.description, s.parameters, s.triangles(**s.defaults))
+          for s in BUILT_INS.values()),
+        *(SceneListing(name, description, (),
+                       SceneFile.read(example_path(name), TRIANGLE_LIMIT).placed.triangles)
+          for name, description in EXAMPLES.items()),
     ]
 
 
@@ -215,8 +248,9 @@ def parse_scene(scene: str | Path) -> Scene:
     """What a scene argument means; no file is opened.
 
     A ``Path``, a known file extension or the name of an existing file means that
-    file: a mesh, or a display list (``.npz``).  ``hard:NAME`` is a hard case.  Anything
-    else is the name of a built-in, with arguments if need be:
+    file: a mesh, a display list (``.npz``), or a scene file (``.scene``).  ``hard:NAME`` is
+    a hard case.  Anything else is the name of an example of a scene file, or of a built-in
+    with arguments if need be:
     ``sphereflake:depth=3,tessellation=1``.
 
     Raises ``InputError``, with the nearest name for one that is unknown.
@@ -226,12 +260,13 @@ def parse_scene(scene: str | Path) -> Scene:
     path = Path(scene)
     suffix = path.suffix.lower()
     if suffix == DESCRIPTION_EXTENSION:
-        raise InputError(f"{scene}: extension: scene descriptions (.scene) are not supported yet; "
-                         "use a mesh, a display list or a built-in scene")
+        return DescribedScene(path, path.name)
     if suffix == DISPLAY_LIST_EXTENSION:
         return DisplayListScene(path)
     if isinstance(scene, Path) or suffix in MESH_EXTENSIONS:
         return MeshFileScene(path)
+    if scene in EXAMPLES:
+        return DescribedScene(example_path(scene), scene)
     name, colon, arguments = scene.partition(":")
     built_in = BUILT_INS.get(name)
     if built_in is not None:
@@ -239,8 +274,9 @@ def parse_scene(scene: str | Path) -> Scene:
     # A path by its looks: the reader of files says what is wrong with it.
     if "/" in name or path.suffix[1:].isalpha() or (name and _exists(path)):
         return MeshFileScene(path)
-    near = difflib.get_close_matches(name.lower(), BUILT_INS, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(BUILT_INS)}"
+    known = [*BUILT_INS, *EXAMPLES]
+    near = difflib.get_close_matches(name.lower(), known, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(known)}"
     raise InputError(f"scene: {name!r} is neither a built-in scene nor a file; {hint}")
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from .hard_cases.catalogue import hard_case
 from .scene_argument import (
+    TRIANGLE_LIMIT,
     BuiltInScene,
+    DescribedScene,
     DisplayListScene,
     HardCaseScene,
     MeshFileScene,
@@ -16,12 +18,13 @@ from .scene_argument import (
     parse_scene,
 )
 from .scenes.built_in.random_triangles import random_display_list
-from .scenes.camera import FRAMED, Camera, View, framing_camera
+from .scenes.camera import FRAMED, Camera, View, framing_camera, seen_direction
 from .scenes.lighting import DEFAULT_LIGHTING, Lighting, Shading, check_shading
 from .scenes.mesh import Mesh
 from .scenes.mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
 from .scenes.mesh_files.load_mesh import load_mesh
 from .scenes.quantise import PictureFormat
+from .scenes.scene_files.scene_file import SceneFile
 from .specification.display_list import DisplayList
 from .specification.errors import InputError
 
@@ -39,15 +42,33 @@ class SceneDisplayList:
 
 @dataclass(frozen=True, eq=False)
 class LoadedScene:
-    """A scene whose mesh is there, to be looked at several times; see ``read_scene``."""
+    """A scene whose mesh or scene file is there, to be looked at several times; see
+    ``read_scene``."""
 
     scene: Scene
     mesh: Mesh | None
+    file: SceneFile | None = None
+
+    @property
+    def direction(self) -> tuple[float, float] | None:
+        """Azimuth and elevation from where it is seen if nothing is said; None: it cannot be
+        turned."""
+        if self.file is not None:
+            return self.file.direction
+        return None if self.mesh is None else seen_direction(self.mesh)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Pixels of its picture, where nothing is said of them."""
+        asked = None if self.file is None else self.file.description.size
+        return asked or (DEFAULT_SIZE, DEFAULT_SIZE)
 
 
 def read_scene(scene: str | Path) -> LoadedScene:
-    """Read or make a scene's mesh, if it has one.  Raises ``InputError``."""
+    """Read or make a scene's mesh, if it has one, or read its file.  Raises ``InputError``."""
     chosen = parse_scene(scene)
+    if isinstance(chosen, DescribedScene):
+        return LoadedScene(chosen, None, SceneFile.read(chosen.path, TRIANGLE_LIMIT))
     return LoadedScene(chosen, mesh_of_scene(chosen))
 
 
@@ -65,9 +86,9 @@ def make_display_list(
     lighting: Lighting = DEFAULT_LIGHTING,
     cull: bool = False,
 ) -> SceneDisplayList:
-    """The display list of a built-in scene, a mesh file, a hard case or a saved display list.
+    """The display list of a built-in scene, a mesh or scene file, a hard case or a saved list.
 
-    ``width``, ``height``     pixels; None: 64, or the list's own
+    ``width``, ``height``     pixels; None: 64, or the scene file's or the list's own
     ``sub_bits``              None: 8, or the list's own
     ``depth_bits``            None: 24, or the list's own
     ``shading``               ``gouraud`` or ``flat``
@@ -84,20 +105,25 @@ def make_display_list(
     >>> teapot.name, teapot.display_list.triangles
     ('teapot:tessellation=2', 240)
     """
-    chosen = scene.scene if isinstance(scene, LoadedScene) else parse_scene(scene)
+    loaded = scene if isinstance(scene, LoadedScene) else read_scene(scene)
+    chosen = loaded.scene
     if isinstance(chosen, DisplayListScene | HardCaseScene):
         given = {"width": width, "height": height, "sub_bits": sub_bits, "depth_bits": depth_bits}
         _refuse(chosen, "a display list is already projected and lit", camera, view, lighting, cull)
         return _replay(chosen, given, background)
+    size = loaded.size
     picture = PictureFormat(
-        DEFAULT_SIZE if width is None else width,
-        DEFAULT_SIZE if height is None else height,
+        size[0] if width is None else width,
+        size[1] if height is None else height,
         PictureFormat.sub_bits if sub_bits is None else sub_bits,
         PictureFormat.depth_bits if depth_bits is None else depth_bits,
     )
     shade = check_shading(shading)
+    if loaded.file is not None:
+        return _described(loaded.file, chosen, picture, camera, view=view, lighting=lighting,
+                          shading=shade, background=background, cull=cull)
     behind = DEFAULT_BACKGROUND if background is None else background
-    mesh = scene.mesh if isinstance(scene, LoadedScene) else mesh_of_scene(chosen)
+    mesh = loaded.mesh
     if mesh is None:
         assert isinstance(chosen, BuiltInScene)
         _refuse(chosen, "its triangles are made on the screen", camera, view, lighting, cull)
@@ -110,6 +136,16 @@ def make_display_list(
         mesh, picture, shading=shade, camera=camera, background=behind, lighting=lighting, cull=cull
     )
     return SceneDisplayList(display_list, chosen.name, _notes(mesh, display_list))
+
+
+def _described(file: SceneFile, chosen: Scene, picture: PictureFormat, camera: Camera | None,
+               **looking: Any) -> SceneDisplayList:
+    """What a scene file says, looked at so."""
+    if camera is not None:
+        raise InputError(f"{chosen.name}: camera: the file says where the eye is; leave it out")
+    display_list = file.display_list(picture, **looking)
+    empty = () if display_list.triangles else ("nothing is in view: the picture is empty",)
+    return SceneDisplayList(display_list, chosen.name, (*file.notes, *empty))
 
 
 def mesh_of_scene(scene: Scene) -> Mesh | None:

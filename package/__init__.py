@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _HOMES
+    from .golden.organisations.region_table import packed_table
     from .golden.planning.machine_plan import plan
     from .golden.scene_display_list import make_display_list
     from .golden.specification.configuration import MachineConfiguration
@@ -26,6 +27,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _H
     from .testbenches.comparison.compare_cages import compare_cages
     from .testbenches.export.export_files import export
     from .testbenches.frames.compare import compare
+    from .testbenches.frames.region_host import RegionHost
     from .testbenches.frames.responses import MachineError
     from .testbenches.frames.simulation import simulate_frame
     from .testbenches.render import render
@@ -39,11 +41,13 @@ __all__ = [
     "Machine",
     "MachineConfiguration",
     "MachineError",
+    "RegionHost",
     "__version__",
     "compare",
     "compare_cages",
     "export",
     "make_display_list",
+    "packed_table",
     "plan",
     "render",
     "render_frames",
@@ -57,10 +61,12 @@ _HOMES = {
     "Machine": "hdl.machine",
     "MachineConfiguration": "golden.specification.configuration",
     "MachineError": "testbenches.frames.responses",
+    "RegionHost": "testbenches.frames.region_host",
     "compare": "testbenches.frames.compare",
     "compare_cages": "testbenches.comparison.compare_cages",
     "export": "testbenches.export.export_files",
     "make_display_list": "golden.scene_display_list",
+    "packed_table": "golden.organisations.region_table",
     "plan": "golden.planning.machine_plan",
     "render": "testbenches.render",
     "render_frames": "testbenches.render_frames",

@@ -39,6 +39,14 @@ def packed_table(counts: Int64, elements: int, slots: int) -> Int64:
     the limit, all empty regions would fall to one element.
 
     Ellsworth 1994, the greedy multiple-bin packing before figure 3.
+
+    ``counts``           int64 (regions,), or anything that numpy makes that of
+    ``elements, slots``  regions of each processing element; together there is room for all, or
+                         ``InputError``
+
+    >>> import cardcage
+    >>> cardcage.packed_table([7, 1, 40, 2], elements=2, slots=3).tolist()
+    [1, 1, 0, 1]
     """
     if elements * slots < len(counts):
         raise InputError(f"slots: {slots} in each of {elements} processing elements do not hold "

@@ -174,10 +174,10 @@ def framing_camera(mesh: Mesh, view: View = FRAMED) -> Camera:
     distance = radius / math.sin(math.radians(FIELD_OF_VIEW_DEGREES) / 2.0)
     up: Vector = mesh.up
     if view.direction is not None:
-        direction, upwards = _seen_from(mesh.up, *view.direction)
+        direction, upwards = seen_from(mesh.up, *view.direction)
         up = (float(upwards[0]), float(upwards[1]), float(upwards[2]))
     elif mesh.eye_direction is None:
-        direction, _ = _seen_from(mesh.up, AZIMUTH_DEGREES, ELEVATION_DEGREES)
+        direction, _ = seen_from(mesh.up, AZIMUTH_DEGREES, ELEVATION_DEGREES)
     else:
         direction = _unit(np.array(mesh.eye_direction))
     eye = center + direction * distance
@@ -195,13 +195,17 @@ def seen_direction(mesh: Mesh) -> tuple[float, float]:
     """Azimuth and elevation in degrees, as in ``View``, from where a mesh asks to be seen."""
     if mesh.eye_direction is None:
         return AZIMUTH_DEGREES, ELEVATION_DEGREES
-    right, front, up = (float(axis @ _unit(np.array(mesh.eye_direction)))
-                        for axis in _level_axes(mesh.up))
+    return direction_of(np.array(mesh.eye_direction), mesh.up)
+
+
+def direction_of(towards: NDArray[np.float64], upwards: Vector) -> tuple[float, float]:
+    """Azimuth and elevation of a direction towards the eye, where ``upwards`` is up."""
+    right, front, up = (float(axis @ _unit(towards)) for axis in level_axes(upwards))
     return (math.degrees(math.atan2(right, front)),
             math.degrees(math.asin(min(1.0, max(-1.0, up)))))
 
 
-def _level_axes(up: Vector) -> NDArray[np.float64]:
+def level_axes(up: Vector) -> NDArray[np.float64]:
     """Unit vectors right, to the front, and up, of a scene with that direction up."""
     upwards = _unit(np.array(up))
     across = np.array([1.0, 0.0, 0.0]) if abs(upwards[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
@@ -209,10 +213,10 @@ def _level_axes(up: Vector) -> NDArray[np.float64]:
     return np.stack([right, np.cross(right, upwards), upwards])
 
 
-def _seen_from(up: Vector, azimuth_degrees: float, elevation_degrees: float
+def seen_from(up: Vector, azimuth_degrees: float, elevation_degrees: float
                ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Unit vectors towards the eye, and up in the picture, also from straight above."""
-    right, front, upwards = _level_axes(up)
+    right, front, upwards = level_axes(up)
     azimuth, elevation = math.radians(azimuth_degrees), math.radians(elevation_degrees)
     level = right * math.sin(azimuth) + front * math.cos(azimuth)
     towards = level * math.cos(elevation) + upwards * math.sin(elevation)

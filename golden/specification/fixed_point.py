@@ -106,6 +106,18 @@ def ceil_divide(numerator: int | Array, denominator: int | Array) -> int | Array
 
 
 @overload
+def modulated(color: int, shade: int) -> int: ...
+@overload
+def modulated(color: Array, shade: Array) -> Array: ...
+def modulated(color: int | Array, shade: int | Array) -> int | Array:
+    """A channel of eight bits under a shade of as many: 255 leaves it as it is.
+
+    floor(color * (shade + 1) / 256), so that hardware needs a product and no division.
+    """
+    return cast("int | Array", color * (shade + 1) >> 8)
+
+
+@overload
 def bit_length(value: int) -> int: ...
 @overload
 def bit_length(value: Array) -> NDArray[np.int64]: ...

@@ -13,6 +13,9 @@ from .presenter import Presenter
 
 __all__ = ["NodeControl"]
 
+#: Of the faults for which a cage of nodes draws nothing; a machine may have greater ones.
+FAULT_BITS = 3
+
 
 class NodeControl(OneNode):
     """Adds up the nodes at boot, has lists loaded and drawn, and what is drawn merged and shown.
@@ -160,7 +163,7 @@ class NodeControl(OneNode):
 
     def fault(self, controller):
         units = controller.unsupported_units | self.unsupported
-        return Mux(units, Fault.UNITS_UNSUPPORTED, Fault.NODES_DIFFER)
+        return Mux(units, C(Fault.UNITS_UNSUPPORTED, FAULT_BITS), C(Fault.NODES_DIFFER, FAULT_BITS))
 
     def after_drawn(self, m, controller):
         if self.presenter is None:

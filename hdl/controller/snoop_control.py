@@ -10,7 +10,7 @@ from ...golden.specification.ranges import COLOR_BITS
 from ..backplane.connectors import PictureLines
 from ..backplane.words import Operation
 from ..merging.snoop_words import SnoopLines
-from .node_control import NodeControl
+from .node_control import FAULT_BITS, NodeControl
 
 __all__ = ["SnoopControl"]
 
@@ -140,7 +140,8 @@ class SnoopControl(NodeControl):
         return super().refused(controller) | ~self._frame_supported
 
     def fault(self, controller):
-        return Mux(self._frame_supported, super().fault(controller), Fault.UNITS_UNSUPPORTED)
+        return Mux(self._frame_supported, super().fault(controller),
+                   C(Fault.UNITS_UNSUPPORTED, FAULT_BITS))
 
     def commands(self, m, controller):
         super().commands(m, controller)

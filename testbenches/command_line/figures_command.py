@@ -17,18 +17,22 @@ from .command_group import EXIT_DIFFERENT
 from .command_options import Size
 
 #: The papers that can be redrawn.
-PAPERS = ("cox-hanrahan",)
+PAPERS = ("cox-hanrahan", "ellsworth")
 
 
 @click.command(name="figures")
 @click.argument("paper", type=click.Choice(PAPERS), metavar="PAPER")
-@click.option("--size", type=Size(), metavar="WxH", default="512x512", show_default=True,
-              help="Of the screen.")
+@click.option("--size", type=Size(), metavar="WxH",
+              help="Of the screen; by default 512x512, for ellsworth 640x512.")
+@click.option("--frames", type=int, metavar="N",
+              help="ellsworth: of each model; by default as many as a few minutes allow.")
+@click.option("--model", "models", multiple=True, metavar="SCENE",
+              help="ellsworth: a mesh to turn in place of the two models; may be given again.")
 @click.option("--rtl/--no-rtl", "simulate", default=True, show_default=True,
-              help="Simulate the cages of the last table, and the points measured in RTL: minutes "
-              "the first time.  The rest are golden and cycle models, a minute.")
-@click.option("--cells", is_flag=True, help="Also place and route the boards of the last table, "
-              "some minutes each; without it earlier results are shown.")
+              help="Simulate the machines whose points are marked, and the cages of a table: "
+              "minutes the first time.  The rest are golden and cycle models.")
+@click.option("--cells", is_flag=True, help="cox-hanrahan: also place and route the boards of the "
+              "last table, some minutes each; without it earlier results are shown.")
 @click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: print one object.")
@@ -45,6 +49,11 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
     out.  Then which assignment of the triangles to the nodes makes a frame shortest, and what each
     kind of merge costs on sixteen nodes.
 
+    ellsworth: D. A. Ellsworth, A New Algorithm for Interactive Graphics on Multicomputers, 1994.
+    Figures 4 and 5 and the overlap factor: how evenly regions of the screen that are dealt out anew
+    for each frame share the work of 2 to 512 processors, by triangles, as the paper counts, and by
+    clocks; and what cures the loss where the last frame's counts have to do.
+
     Writes PAPER.html, one page complete in itself, PAPER.json and PAPER.png, some of the figures,
     to DIR.  What was measured is kept: an interrupted run goes on where it was.
 
@@ -55,32 +64,31 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
       cardcage figures cox-hanrahan
       cardcage figures cox-hanrahan --cells
       cardcage figures cox-hanrahan --no-rtl --json
+      cardcage figures ellsworth --no-rtl
+      cardcage figures ellsworth --no-rtl --frames 4 --size 128x96 --model teapot
+      cardcage figures ellsworth
 
     Exit status: 0 every simulated picture and count as golden, 1 otherwise, 2 the input or the
     system is at fault.
     """
-    from ..figures.cox_hanrahan import (  # charts take a second
-        FiguresOptions,
-        expected_steps,
-        redraw_cox_hanrahan,
-    )
-    from ..figures.cox_hanrahan_facts import cox_hanrahan_facts
-    from ..figures.cox_hanrahan_page import FIGURE_FILES, write_cox_hanrahan
-    from ..figures.figure_tables import headline, tables
+    from ..figures.papers import PAPERS as KNOWN  # charts take a second
 
-    asked = FiguresOptions(**options)
-    with atomic_folder(out, FIGURE_FILES) as folder:
-        with step_bar(expected_steps(asked)) as step:
-            found = redraw_cox_hanrahan(asked, command_line, step)
+    known = KNOWN[paper]
+    # What was not asked for is the paper's own default.
+    asked = known.chosen(paper, {name: value for name, value in options.items()
+                                 if value not in (None, (), False) or name == "simulate"})
+    with atomic_folder(out, known.files) as folder:
+        with step_bar(len(asked.jobs()) + 1) as step:
+            found = known.redraw(asked, command_line, step)
         with output_errors(out, "--out"):
-            write_cox_hanrahan(found, folder)
+            known.write(found, folder)
     if as_json:
-        click.echo(json.dumps(cox_hanrahan_facts(found), indent=2))
+        click.echo(json.dumps(known.facts(found), indent=2))
     else:
         if sys.stdout.isatty():
-            print_tables(headline(found), tables(found))
+            print_tables(known.headline(found), known.tables(found))
         else:
-            click.echo(tables_text(headline(found), tables(found)))
-        click.echo(f"page: {out / FIGURE_FILES[0]}")
+            click.echo(tables_text(known.headline(found), known.tables(found)))
+        click.echo(f"page: {out / known.files[0]}")
     if found.differences:
         click.get_current_context().exit(EXIT_DIFFERENT)

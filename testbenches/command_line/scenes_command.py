@@ -6,6 +6,7 @@ import sys
 
 import click
 
+from ...golden.scenes.scene_files.language import reference
 from .tables.hard_cases_table import hard_cases_json, hard_cases_table, hard_cases_text
 from .tables.scenes_table import scenes_json, scenes_table, scenes_text
 
@@ -14,7 +15,9 @@ from .tables.scenes_table import scenes_json, scenes_table, scenes_text
 @click.option("--hard", is_flag=True,
               help="The hard cases, and what a naive implementation does wrong on each.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: a list of objects.")
-def scenes_command(hard: bool, as_json: bool) -> None:
+@click.option("--language", is_flag=True,
+              help="The words of scene files, with what they mean and an example of each.")
+def scenes_command(hard: bool, as_json: bool, language: bool) -> None:
     """List the built-in scenes, their parameters and their triangles, or the hard cases.
 
     \b
@@ -24,7 +27,12 @@ def scenes_command(hard: bool, as_json: bool) -> None:
       cardcage render sphereflake:depth=1,tessellation=2
       cardcage scenes --hard
       cardcage render hard:sliver-fan
+      cardcage scenes --language
+      cardcage render my.scene
     """
+    if language:
+        click.echo(reference())
+        return
     to_json, to_table, to_text = (
         (hard_cases_json, hard_cases_table, hard_cases_text) if hard
         else (scenes_json, scenes_table, scenes_text))

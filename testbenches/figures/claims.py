@@ -6,11 +6,11 @@ Each claim is asked of each scene that it is about, dealt out round robin as the
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from .paper_table import paper_rows
 from .scene_traffic import CONTIGUOUS, NODES, SHUFFLED, SceneTraffic
+from .verdict import Summary, Verdict, together
 
 #: As many nodes as there are on the figures: where the plateau is.
 MOST = NODES[-1]
@@ -26,52 +26,6 @@ LOW_REDUCTION = 2
 
 #: A plateau: twice the nodes have so much more traffic at most.
 FLAT = 0.05
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A claim and one scene: whether it came out, and the numbers, in words."""
-
-    claim: str
-    scene: str
-    came_out: bool
-    numbers: str
-
-    @property
-    def outcome(self) -> str:
-        return "Came out" if self.came_out else "Did not"
-
-    def __str__(self) -> str:
-        return f"{self.claim}  {self.outcome}: {self.numbers}."
-
-
-@dataclass(frozen=True)
-class Summary:
-    """A claim and all scenes that it is about: on how many it came out, and on which it did not."""
-
-    claim: str
-    scenes: int
-    failed: Sequence[str]
-
-    @property
-    def came_out(self) -> bool:
-        return not self.failed
-
-    @property
-    def outcome(self) -> str:
-        if self.came_out:
-            return "Came out"
-        return "In part" if len(self.failed) < self.scenes else "Did not"
-
-    @property
-    def numbers(self) -> str:
-        if self.came_out and self.scenes == 1:
-            return "on the one scene that it is about"
-        return f"on {self.scenes - len(self.failed)} of {self.scenes} scenes" + (
-            f"; not on {', '.join(self.failed)}" if self.failed else "")
-
-    def __str__(self) -> str:
-        return f"{self.claim}  {self.outcome}: {self.numbers}."
 
 
 CLOSE = "Expected traffic is close to observed traffic."
@@ -140,10 +94,4 @@ def _reductions(scene: SceneTraffic) -> Iterator[tuple[str, bool, str]]:
 
 def summary(scenes: Sequence[SceneTraffic]) -> list[Summary]:
     """Each claim once, of all scenes together."""
-    together: dict[str, list[Verdict]] = {}
-    for scene in scenes:
-        for verdict in claims_of(scene):
-            together.setdefault(verdict.claim, []).append(verdict)
-    return [Summary(claim, len(verdicts), [verdict.scene for verdict in verdicts
-                                           if not verdict.came_out])
-            for claim, verdicts in together.items()]
+    return together(verdict for scene in scenes for verdict in claims_of(scene))

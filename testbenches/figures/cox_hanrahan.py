@@ -89,11 +89,6 @@ class CoxHanrahan:
                   for point in self.points if not point.equal)]
 
 
-def expected_steps(options: FiguresOptions) -> int:
-    """For a progress bar."""
-    return len(options.jobs()) + 1
-
-
 def redraw_cox_hanrahan(options: FiguresOptions, command_line: str | None = None,
                         step: Step = lambda doing: None) -> CoxHanrahan:
     """Everything on the page; ``step`` is called as the work begins and as each part is done.

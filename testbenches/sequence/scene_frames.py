@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...golden.scene_display_list import LoadedScene, SceneDisplayList, read_scene
-from ...golden.scenes.camera import View, seen_direction
+from ...golden.scenes.camera import View
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..machine_options import MachineOptions, load_scene
@@ -47,9 +47,9 @@ class SceneFrames(Sequence[DisplayList]):
     @property
     def views_as_seen(self) -> list[View]:
         """The same, with the direction from which a mesh asks to be seen, where none is said."""
-        mesh = self._loaded.mesh
-        return [view if view.direction or mesh is None else
-                replace(view, direction=seen_direction(mesh)) for view in self.views]
+        direction = self._loaded.direction
+        return [view if view.direction or direction is None else
+                replace(view, direction=direction) for view in self.views]
 
     def __len__(self) -> int:
         return len(self.views)
@@ -80,12 +80,12 @@ def _views(loaded: LoadedScene, options: MachineOptions, frames: int | None, tur
     if frames is None or not 1 <= frames <= MOST_FRAMES:
         raise InputError(f"--frames: must be 1 to {MOST_FRAMES:,}, not {frames}")
     asked: View = options.looking()["view"]
-    if loaded.mesh is None:
+    if loaded.direction is None:
         if turn is not None:
             raise InputError(f"--turn: {loaded.scene.name} is no mesh and cannot be turned; leave "
                              "it out, or take a mesh")
         return [asked] * frames
-    start = asked.direction or seen_direction(loaded.mesh)
+    start = asked.direction or loaded.direction
     views = turning(start, asked.zoom, frames, DEFAULT_TURN if turn is None else turn)
     # The first is seen as a picture by itself is, to the last bit.
     return [replace(views[0], direction=asked.direction), *views[1:]]

@@ -30,6 +30,7 @@ from cardcage.golden.scenes.built_in.terrain import elevations, terrain
 from cardcage.golden.scenes.built_in.tetra import tetra
 from cardcage.golden.scenes.mesh import Mesh, corner_normals, cross, dot, edge_vectors, face_normals
 from cardcage.golden.scenes.quantise import PictureFormat
+from cardcage.golden.scenes.scene_files.examples import EXAMPLES
 from cardcage.golden.specification.errors import InputError
 
 
@@ -66,9 +67,10 @@ def test_listed_triangle_counts_are_those_of_the_scenes():
     listed = {line.name: line.triangles for line in list_scenes()}
     assert listed == {
         "teapot": 992, "sphereflake": 11648, "tetra": 1024, "spheres": 2048, "terrain": 1050,
-        "random": 200,
+        "head": 1152, "capsid": 4096, "random": 200, "three_cubes": 8228,
+        "five_primitives": 3602, "thousand_spheres": 128_000, "crystals": 712, "colonnade": 8222,
     }  # fmt: skip
-    for name in set(listed) - {"random"}:
+    for name in set(listed) - {"random", *EXAMPLES}:
         assert make(name).triangles == listed[name]
 
 
@@ -82,6 +84,9 @@ def test_listed_triangle_counts_are_those_of_the_scenes():
     ("spheres:count=5,depth=3", 5 * 512),
     ("terrain:step=7", 2 * 49 * 57),
     ("terrain:step=64,relief=0", 2 * 5 * 6),
+    ("head:tessellation=1", 8),
+    ("head:tessellation=86", 59_168),
+    ("capsid:count=5,depth=3", 5 * 512),
 ])
 def test_counts_with_arguments(text, triangles):
     scene = parse_scene(text)
@@ -104,6 +109,36 @@ def test_terrain_is_a_surface_over_the_plane_as_high_as_the_elevations():
     east_west, south_north, _ = mesh.vertices.max(axis=0) - mesh.vertices.min(axis=0)
     assert east_west == pytest.approx(29.76) and south_north == pytest.approx(31.08)
     assert mesh.vertices[0, 1] > mesh.vertices[-1, 1]  # from the far side to the near one
+
+
+# ---- head and capsid
+
+
+@pytest.mark.parametrize("tessellation", [1, 2, 7, 30])
+def test_head_is_closed_and_faces_outwards(tessellation):
+    mesh = make(f"head:tessellation={tessellation}")
+    assert len(open_edges(mesh.faces)) == 0 and not mesh.degenerate().any()
+    assert len(mesh.vertices) == mesh.triangles // 2 + 2  # as Euler has it of a sphere
+    corners = mesh.corners()
+    volume = (cross(corners[:, 0], corners[:, 1]) * corners[:, 2]).sum(axis=1)
+    assert (volume > 0).all()  # seen from its middle, every face turns its back
+
+
+def test_head_is_like_itself_in_a_mirror_and_has_a_nose():
+    vertices = make("head:tessellation=24").vertices
+    there = {tuple(point) for point in (vertices * [-1, 1, 1]).round(9) + 0.0}
+    assert there == {tuple(point) for point in vertices.round(9) + 0.0}
+    front = vertices[vertices[:, 1].argmin()]
+    assert abs(front[0]) < 0.05 and -0.3 < front[2] < 0.1
+
+
+def test_balls_of_a_capsid_lie_on_a_sphere_and_run_into_each_other():
+    mesh = make("capsid:count=40,depth=1")
+    centers = mesh.vertices.reshape(40, -1, 3).mean(axis=1)
+    assert np.linalg.norm(centers, axis=1) == pytest.approx(np.ones(40))
+    apart = np.linalg.norm(centers[:, None] - centers, axis=2) + 9 * np.eye(40)
+    size = np.linalg.norm(mesh.vertices.reshape(40, -1, 3) - centers[:, None], axis=2)
+    assert apart.min(axis=1).max() < 2 * size.min() and apart.min() > size.max()
 
 
 # ---- teapot
@@ -285,8 +320,8 @@ def test_random_numbers_never_change():
 @pytest.mark.parametrize("text, message", [
     ("teapto", "scene: 'teapto' is neither a built-in scene nor a file; did you mean teapot?"),
     ("Sphere_flake:depth=2", "did you mean sphereflake?"),
-    ("", "choose one of teapot, sphereflake, tetra, spheres, terrain, random"),
-    ("xyzzy", "choose one of teapot, sphereflake, tetra, spheres, terrain, random"),
+    ("", "choose one of teapot, sphereflake, tetra, spheres, terrain, head, capsid, random"),
+    ("xyzzy", "choose one of teapot, sphereflake, tetra, spheres, terrain, head, capsid, random"),
     ("tetra:depth=x", "tetra: depth: 'x' is not a whole number from 0 to 9"),
     ("tetra:depth=2.5", "tetra: depth: '2.5' is not a whole number from 0 to 9"),
     ("tetra:depth=-1", "tetra: depth: '-1' is not a whole number from 0 to 9"),
@@ -307,7 +342,6 @@ def test_random_numbers_never_change():
     ("spheres:radius=x", "'x' is not a number from 0.001 to 2.0"),
     ("sphereflake:depth=6,tessellation=8",
      "sphereflake: depth, tessellation: makes 313456590848 triangles, more than 4000000"),
-    ("room.scene", "room.scene: extension: scene descriptions (.scene) are not supported yet"),
 ])
 def test_bad_scene_names(text, message):
     with pytest.raises(InputError) as caught:

@@ -191,7 +191,6 @@ def test_no_frame(place, engine, error):
 
 @pytest.mark.parametrize(("arguments", "words"), [
     *BAD_SCENES_AND_MACHINES,
-    (["picture.scene"], "not supported yet"),
     (["teapot:steps=3"], "steps"),
     (["teapot:tessellation=many"], "tessellation"),
     (["--cards", "MM"], "no processing element"),

@@ -12,12 +12,8 @@ from refusals import refusal
 
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.command_line.figures_command import PAPERS
-from cardcage.testbenches.figures import cox_hanrahan, figure_scenes
-from cardcage.testbenches.figures.cox_hanrahan import (
-    FiguresOptions,
-    expected_steps,
-    redraw_cox_hanrahan,
-)
+from cardcage.testbenches.figures import cox_hanrahan, figure_scenes, papers
+from cardcage.testbenches.figures.cox_hanrahan import FiguresOptions, redraw_cox_hanrahan
 from cardcage.testbenches.figures.cox_hanrahan_facts import PAPER
 from cardcage.testbenches.figures.cox_hanrahan_page import FIGURE_FILES
 from cardcage.testbenches.figures.figure_scenes import FigureScene
@@ -133,6 +129,8 @@ def test_a_difference_is_status_1(recording, monkeypatch):
     (["cox-hanrahan", "--no-rtl", "--size", "2048x2048"], "memory units"),
     (["cox-hanrahan", "--no-rtl", "--size", "8x16"], "Brooks; take 11x11 at least"),
     (["cox-hanrahan", "--engine", "icarus"], "icarus"),
+    (["cox-hanrahan", "--frames", "3"], "--frames: is not for cox-hanrahan"),
+    (["cox-hanrahan", "--model", "teapot"], "--model: is not for cox-hanrahan"),
 ])
 def test_bad_input(arguments, word):
     assert word in refusal(run, *arguments)
@@ -146,12 +144,12 @@ def test_a_file_where_the_folder_should_be(place):
 def test_help_and_papers():
     text = CliRunner().invoke(main, ["figures", "--help"]).stdout
     assert all(f"cardcage figures {paper}" in text for paper in PAPERS)
-    assert PAPERS == (PAPER,)
+    assert tuple(papers.PAPERS) == PAPERS and PAPER in PAPERS
 
 
 def test_every_step_is_told():
     told = []
     options = FiguresOptions(size=(16, 16), simulate=False, scenes=["teapot", "random as Rad"])
     found = redraw_cox_hanrahan(options, step=told.append)
-    assert len(told) == expected_steps(options) == 4
+    assert len(told) == len(options.jobs()) + 1 == 4
     assert [scene.name for scene in found.scenes] == ["teapot", "random as Rad"]

@@ -1,0 +1,109 @@
+"""What a host says and hears where regions are dealt out, and what the page says of it."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cardcage.golden.organisations.organisation_of import organisation_of
+from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind, opcode_of, unpack
+from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.testbenches.frames.conversation import owed_to, responses_owed
+from cardcage.testbenches.frames.frame_job import frame_commands, frame_job
+from cardcage.testbenches.frames.region_host import (
+    RegionHost,
+    of_regions,
+    of_slots,
+    region_readings,
+    table_commands,
+)
+
+PAGE = Path(__file__).parents[3] / "docs" / "regions.md"
+MACHINE = MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), slots=8)
+
+
+def read(machine, words):
+    """Regions and elements of command words."""
+    layout = commands.region_layout(machine)
+    found = [unpack(layout, word >> commands.BODY_OFFSET) for word in words]
+    assert all(opcode_of(word) == Opcode.REGION for word in words)
+    return [(each["row"], each["column"]) for each in found], [each["element"] for each in found]
+
+
+def test_a_table_in_words():
+    table = np.arange(20) * 7 % 3
+    places, elements = read(MACHINE, table_commands(MACHINE, table))
+    assert places == [(row, column) for row in range(4) for column in range(5)]
+    assert elements == table.tolist()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_counts_of_slots_and_of_regions(seed):
+    source = np.random.default_rng(seed)
+    table = source.permutation(np.arange(20) % 3)
+    counts = source.integers(0, 100, 20)
+    slots = of_slots(MACHINE, table, counts)
+    assert slots.sum() == counts.sum() and slots.shape == (3, 8)
+    for region, (element, slot) in enumerate(zip(table, slots_of(table), strict=True)):
+        assert slots[element, slot] == counts[region]
+    assert of_regions(MACHINE, table, slots.ravel().tolist()).tolist() == counts.tolist()
+
+
+def test_a_host_from_picture_to_picture():
+    host = RegionHost(MACHINE)
+    assert host.table.tolist() == static_table(20, 3).tolist() and host.commands() == []
+    for seed in range(3):
+        counts = np.random.default_rng(seed).integers(0, 100, 20)
+        host.counted(of_slots(MACHINE, host.table, counts).ravel())
+        assert host.table.tolist() == packed_table(counts, 3, 8).tolist()
+        assert read(MACHINE, host.commands())[1] == host.table.tolist()
+        assert host.commands() == []  # it knows now
+
+
+@pytest.mark.parametrize("fields", [{"balance": "static"}, {"balancer": "hardware"}], ids=str)
+def test_a_host_that_sends_no_table(fields):
+    host = RegionHost(MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), slots=8, **fields))
+    host.counted(np.arange(24))
+    assert host.commands() == []
+
+
+@pytest.mark.parametrize(("fields", "owed"), [
+    ({}, {Opcode.REGION: [], Opcode.READ_REGIONS: [ResponseKind.REGION_COUNT] * 24}),
+    ({"balance": "static"}, {Opcode.REGION: []}),
+    ({"balancer": "hardware"}, {Opcode.READ_REGIONS: [ResponseKind.REGION_COUNT] * 24,
+                                Opcode.READ_TABLE: [ResponseKind.TABLE_ENTRY] * 20}),
+    ({"regions": None, "slots": 0, "cards": "2x(PM)"}, {})], ids=str)
+def test_what_is_owed(fields, owed):
+    machine = MachineConfiguration(**{"cards": "3x(PM)", "width": 20, "height": 14,
+                                      "regions": (5, 4), "slots": 8} | fields)
+    organisation = organisation_of(machine)
+    for opcode in (Opcode.REGION, Opcode.READ_REGIONS, Opcode.READ_TABLE):
+        kinds = [(each.kind, each.value) for each in owed_to(organisation, int(opcode))]
+        assert kinds == ([(kind, None) for kind in owed[opcode]] if opcode in owed else
+                         [(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)])
+    asked = [opcode_of(word) for word in region_readings(machine)]
+    assert asked == [opcode for opcode in owed if opcode != Opcode.REGION]
+
+
+def test_a_frame_with_a_table():
+    listed = make_display_list("random:n=12,size=7,seed=1", width=20, height=14).display_list
+    machine = MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4))
+    plain = frame_commands(machine, listed)
+    table = static_table(20, 3)[::-1]
+    words = frame_commands(machine, listed, table=table)
+    assert words == [*table_commands(machine, table), *plain]
+    job = frame_job(machine, listed, table=table)
+    assert job.commands[:len(words)] == words
+    assert [opcode_of(word) for word in job.commands[len(words):]] == [
+        Opcode.READ_DEPTH, Opcode.READ_COUNTERS, Opcode.READ_REGIONS]
+    assert job.responses == responses_owed(organisation_of(machine), job.commands)
+
+
+def test_the_example_of_the_page():
+    [example] = re.findall(r"^```python\n(.*?)^```", PAGE.read_text("utf-8"),
+                           re.DOTALL | re.MULTILINE)
+    exec(example, {})
