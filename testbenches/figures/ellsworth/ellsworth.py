@@ -48,10 +48,10 @@ class EllsworthOptions:
         """Raises ``InputError``."""
         if self.frames is not None and not 1 <= self.frames <= MOST_FRAMES:
             raise InputError(f"--frames: must be 1 to {MOST_FRAMES:,}, not {self.frames}")
-        if not processors_for(self.size):
+        if len(processors_for(self.size)) < 2:
             width, height = self.size
             raise InputError(f"--size: {width}x{height} is too small for regions of "
-                             f"{LEAST_SIDE}x{LEAST_SIDE} pixels; take 64x48 at least")
+                             f"{LEAST_SIDE}x{LEAST_SIDE} pixels; take 32x32 at least")
         if not self.models:
             return figure_models(self.frames, TURN)
         if len(set(self.models)) < len(self.models):
