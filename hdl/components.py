@@ -13,6 +13,7 @@ from ..golden.specification.card_order import (
     MERGE_CARDS,
     SNOOP_MERGE,
 )
+from ..golden.specification.commands import RESPONSE_VALUE_BITS
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
 from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
@@ -21,7 +22,12 @@ from .backplane.connectors import memory_bus_bits
 from .backplane.fragment_lines import unit_fragment_layout
 from .backplane.id_increment import IdIncrement
 from .backplane.response_link import ResponseLink
+from .balancing.balancer import Balancer
+from .balancing.least_loaded import LeastLoaded
+from .balancing.merge_sorter import MergeSorter
+from .balancing.region_order import RegionOrder, region_shape
 from .controller.frame_tags import FrameTags
+from .controller.region_table import RegionTable
 from .depth_test.one_port import OnePortDepthTest
 from .depth_test.one_port_lane import OnePortLane
 from .depth_test.two_ports import TwoPortDepthTest
@@ -35,6 +41,8 @@ from .direct.unit_feed import UnitFeed
 from .machine import BOARDS, boards_of
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
+from .mapping.region_address import RegionAddress
+from .mapping.region_scan import RegionScanAddress
 from .mapping.unit_pixel import UnitPixel
 from .memory_unit.one_port_memory import OnePortMemory
 from .memory_unit.tag_sweep import TagSweep
@@ -54,6 +62,16 @@ from .rasteriser.interpolator import Interpolator
 from .rasteriser.span_clip import SpanClip
 from .rasteriser.triangle_rows import TriangleRows
 from .rasteriser.triangle_spans import TriangleSpans
+from .regions.band_probes import BandProbes
+from .regions.band_scan import BandScan
+from .regions.large_visits import LargeVisits
+from .regions.own_columns import OwnColumns
+from .regions.own_regions import OwnRegions
+from .regions.region_clip import RegionClip
+from .regions.region_counts import RegionCounts
+from .regions.region_rows import RegionRows
+from .regions.region_spans import RegionSpans
+from .regions.region_visits import RegionVisits
 from .triangle_setup.edge_setup import EdgeSetup
 from .triangle_setup.outline import TriangleOutline
 from .triangle_setup.pixel_box import PixelBox
@@ -62,6 +80,7 @@ from .triangle_setup.result_queue import ResultQueue
 from .triangle_setup.sampling_grid import SamplingGrid, grid_layout
 from .triangle_setup.triangle_setup import TriangleSetup
 from .triangle_setup.vertex_sort import VertexSort
+from .video.region_places import RegionPlaces
 
 __all__ = ["COMPONENTS"]
 
@@ -102,6 +121,39 @@ def _direct(make: Callable[[MachineConfiguration], wiring.Component],
     return make(_merged_by(DIRECT_MERGE, configuration))
 
 
+def _dealt(make: Callable[..., wiring.Component],
+           configuration: MachineConfiguration) -> wiring.Component:
+    """What only cages have whose regions are dealt out."""
+    return make(configuration=_with_regions(configuration))
+
+
+def _with_regions(configuration: MachineConfiguration) -> MachineConfiguration:
+    """The configuration with regions, and what they cost counted; where it has none with two
+    elements, of two units each, and up to four columns and rows of them."""
+    if configuration.regions is not None:
+        return (replace(configuration, balance="clocks", balancer="host", words=0)
+                if configuration.balance == "static" else configuration)
+    sizes = configuration.width, configuration.height
+    columns, rows = (-(-size >> max(1, (size - 1).bit_length() - 2)) for size in sizes)
+    # A picture of one row or column is too narrow to spread over units.
+    cards = "2x(PMM)" if min(sizes) > 1 else "2x(PM)"
+    return replace(configuration, cards=cards, words=0, maximum_units=0, block=1, skew=False,
+                   packet=1, order_bits=0, list_words=0, maximum_nodes=0, allow_orphans=False,
+                   regions=(columns, rows))
+
+
+def _regions(configuration: MachineConfiguration) -> dict[str, int]:
+    """How many there are."""
+    regions = configuration.dealt_regions
+    return {"columns": regions.columns, "rows": regions.rows}
+
+
+def _packing(configuration: MachineConfiguration) -> dict[str, int]:
+    """What regions are packed into, by counts of how many bits."""
+    return {"elements": configuration.maximum_units >> configuration.share_bits,
+            "slots": configuration.slots, "count_bits": RESPONSE_VALUE_BITS}
+
+
 def _fragment(configuration: MachineConfiguration) -> data.StructLayout:
     return unit_fragment_layout(address_bits=configuration.address_bits,
                                 depth_bits=configuration.rank_bits)
@@ -115,6 +167,10 @@ def _depth_of_queues(configuration: MachineConfiguration) -> int:
 #: Makes a component as a machine of that configuration has it; the boards first.
 COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     **{name: partial(_board, name) for name in BOARDS},
+    "balancer": partial(_dealt, lambda configuration: Balancer(
+        **_regions(configuration), **_packing(configuration))),
+    "band_probes": partial(_dealt, BandProbes),
+    "band_scan": partial(_dealt, BandScan),
     "broadcast_queue": lambda c: BroadcastQueue(configuration=c),
     "crossbar": partial(_direct, lambda c: Crossbar(
         elements=c.maximum_nodes, units=c.maximum_units, queue=c.queue, **memory_bus_bits(c))),
@@ -132,14 +188,22 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "frame_tags": lambda c: FrameTags(tag_bits=c.tag_bits),
     "id_increment": lambda c: IdIncrement(bits=c.id_bits),
     "interpolator": lambda c: Interpolator(configuration=c),
+    "large_visits": partial(_dealt, LargeVisits),
     "lattice_block": lambda c: LatticeBlock(configuration=c),
+    "least_loaded": partial(_dealt, lambda configuration: LeastLoaded(
+        label=region_shape(**_regions(configuration)), **_packing(configuration))),
     "memory_bus_selector": lambda c: MemoryBusSelector(**memory_bus_bits(c)),
+    "merge_sorter": partial(_dealt, lambda configuration: MergeSorter(
+        items=configuration.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
+        label=region_shape(**_regions(configuration)))),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),
     "one_port_memory": lambda c: OnePortMemory(words=c.words, depth_bits=c.rank_bits,
                                                tag_bits=c.tag_bits, parts=word_parts(c)),
+    "own_columns": partial(_dealt, OwnColumns),
+    "own_regions": partial(_dealt, OwnRegions),
     "picture_maps": lambda c: PictureMaps(words=c.words),
     # The one that computes the area of a triangle.
     "pipelined_multiplier": lambda c: PipelinedMultiplier(
@@ -150,6 +214,17 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "plane_setup": lambda c: PlaneSetup(configuration=c, **_depth(c)),
     "processing_element_control": lambda c: ProcessingElementControl(
         id_bits=c.id_bits, depth_bits=c.rank_bits, order_bits=c.order_bits),
+    "region_address": partial(_dealt, RegionAddress),
+    "region_clip": partial(_dealt, RegionClip),
+    "region_counts": partial(_dealt, RegionCounts),
+    "region_order": partial(_dealt, lambda configuration: RegionOrder(
+        **_regions(configuration), **_packing(configuration))),
+    "region_places": partial(_dealt, RegionPlaces),
+    "region_rows": partial(_dealt, RegionRows),
+    "region_scan_address": partial(_dealt, RegionScanAddress),
+    "region_spans": partial(_dealt, RegionSpans),
+    "region_table": partial(_dealt, RegionTable),
+    "region_visits": partial(_dealt, RegionVisits),
     "response_link": lambda c: ResponseLink(),
     "result_queue": lambda c: ResultQueue(result_bits=c.depth_plane_bits, depth=16),
     "round_robin": partial(_direct, lambda c: RoundRobin(requesters=c.maximum_nodes)),

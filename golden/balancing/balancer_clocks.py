@@ -10,4 +10,4 @@ def balancer_clocks(regions: int, elements: int, slots: int) -> int:
     """
     passes = max(1, (regions - 1).bit_length())
     sorting = sum(2 * regions + 2 * -(-regions // (2 << number)) for number in range(passes - 1))
-    return elements * slots + regions + sorting + (regions - 1) * (elements + 2) + 6
+    return elements * slots + regions + sorting + (regions - 1) * (elements + 2) + 7

@@ -93,17 +93,21 @@ class CyclePrediction:
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
                    pipeline: Pipeline = PIPELINE, after: DisplayList | None = None,
                    setup: SetupTiming | None = None, retained: bool = False,
-                   table: Int64 | None = None) -> CyclePrediction:
+                   table: Int64 | None = None, begin: int | None = None) -> CyclePrediction:
     """The clocks for ``display_list``.
 
     ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
     machine's own set-up, or None where the triangles come prepared; ``pipeline`` is that of the
     machine.  ``retained``: the nodes draw it from their lists.  ``table``: what regions are dealt
-    out by, int64 (regions,), or None for what a machine begins with.  Precision does not matter to
-    the clocks.
+    out by, int64 (regions,), or None for what a machine begins with.  ``begin``: the first triangle
+    is taken, or the command to draw the lists, so many clocks after a scan began to show its first
+    line; None where nobody knows.  Only where elements share units of one port is it looked at:
+    then they are within 2 % of the machine, lists of a few scan lines included.  Precision does not
+    matter to the clocks.
     """
     if configuration.merges_directly:
-        return _predict_direct(configuration, display_list, pipeline, after, setup, retained)
+        return _predict_direct(configuration, display_list, pipeline, after, setup, retained,
+                               begin)
     organisation = organisation_of(configuration).dealt(table)
     works = ([RegionWork(organisation, display_list, pipeline, after)]
              if isinstance(organisation, DealtRegions) else
@@ -133,9 +137,9 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
 
 def _predict_direct(configuration: MachineConfiguration, display_list: DisplayList,
                     pipeline: Pipeline, after: DisplayList | None, setup: SetupTiming | None,
-                    retained: bool) -> CyclePrediction:
+                    retained: bool, begin: int | None) -> CyclePrediction:
     """Where elements have no pixels of their own."""
-    work = DirectWork(configuration, display_list, pipeline, after)
+    work = DirectWork(configuration, display_list, pipeline, after, begin)
     sent, nodes, order = _sending_order(configuration, display_list, work.primitive, retained)
     drawn = work.drawn(nodes, None if setup is None else SetUp(setup, sent), retained)
     triangles = len(sent)

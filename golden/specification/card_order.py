@@ -113,7 +113,7 @@ def check_merging(cards: str) -> None:
     if merge == DIRECT_MERGE:
         _check_direct(cards)
     elif merge is not None and cards.rstrip(FRAME_UNIT)[-1] != merge:
-        raise InputError(f"cards: {cards!r}: the last node is not ended; add a {merge} "
+        raise InputError(f"cards: {cards!r}: the last node is not ended; put {merge} "
                          f"({CARD_NAMES[merge]}) at its right end")
     nodes = len(node_cards(cards))
     if nodes > MAXIMUM_NODES:
@@ -189,7 +189,7 @@ def _check_node(cards: str, called: str) -> None:
         raise InputError(f"cards: {called} has no memory unit; add an M to the right of a P")
     if cards[0] == MEMORY_UNIT:
         left = len(cards) - len(cards.lstrip(MEMORY_UNIT))
-        raise InputError(f"cards: {called} has {left} memory unit(s) left of the first processing "
+        raise InputError(f"cards: {called} has memory units ({left}) left of the first processing "
                          "element, which belong to nobody; start with a P")
 
 

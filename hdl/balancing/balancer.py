@@ -6,7 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from .least_loaded import LeastLoaded
 from .merge_sorter import MergeSorter
-from .region_counts import RegionCounts, region_shape
+from .region_order import RegionOrder, region_shape
 
 __all__ = ["Balancer"]
 
@@ -15,15 +15,15 @@ class Balancer(wiring.Component):
     """Packs regions into processing elements as ``golden.organisations.region_table.packed_table``
     does, heaviest first.
 
-    It keeps one table: as it was dealt last, from then on to the next packing; after that the packed
-    one.  So the table that is dealt at boot is the first one, and the counts that come are
-    understood by the table that was dealt before the picture that they were counted in.
+    It keeps one table: the one that was dealt last, and after a packing the packed one, until that
+    is dealt.  So before the first packing it has what was dealt at boot; and counts are understood
+    by the table by which the picture was drawn that they were counted in.
 
     ::
 
-        counts ─▶ RegionCounts ─▶ MergeSorter ─▶ LeastLoaded ─▶ table ─▶ element
-                        ▲                                         │  ▲
-                        ╰─────────────────────────────────────────╯  ╰─ dealt
+        counts ─▶ RegionOrder ─▶ MergeSorter ─▶ LeastLoaded ─▶ table ─▶ element
+                       ▲                                        │ ▲
+                       ╰────────────────────────────────────────╯ ╰─ dealt
 
     Latency, from the first count to ``done``, where no count is waited for: what
     ``golden.balancing.balancer_clocks`` says.
@@ -69,8 +69,8 @@ class Balancer(wiring.Component):
 
     def __init__(self, *, columns: int, rows: int, elements: int, slots: int,
                  count_bits: int = 32):
-        self._counts = RegionCounts(columns=columns, rows=rows, elements=elements, slots=slots,
-                                    count_bits=count_bits)
+        self._order = RegionOrder(columns=columns, rows=rows, elements=elements, slots=slots,
+                                  count_bits=count_bits)
         if columns * rows > elements * slots:
             raise ValueError(f"slots: {slots} in each of {elements} elements are too few for "
                              f"{columns * rows} regions")
@@ -97,27 +97,27 @@ class Balancer(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        m.submodules.counts = counts = self._counts
+        m.submodules.order = order = self._order
         m.submodules.sorter = sorter = self._sorter
         m.submodules.packer = packer = self._packer
-        m.submodules.table = table = memory.Memory(
+        m.submodules.places = places = memory.Memory(
             shape=self._place, depth=1 << self._region.size, init=[], attrs={"no_rw_check": 1})
-        write, read = table.write_port(), table.read_port()
+        write, read = places.write_port(), places.read_port()
 
-        wiring.connect(m, wiring.flipped(self.counts), counts.counts)
+        wiring.connect(m, wiring.flipped(self.counts), order.counts)
         wiring.connect(m, sorter.sorted, packer.regions)
         packed, dealt = packer.regions.payload, self.dealt
         m.d.comb += [
-            counts.start.eq(self.start),
-            counts.elements.eq(self.elements),
+            order.start.eq(self.start),
+            order.elements.eq(self.elements),
             packer.start.eq(self.start),
             packer.elements.eq(self.elements),
-            sorter.put.eq(counts.put),
-            sorter.item.eq(counts.item),
+            sorter.put.eq(order.put),
+            sorter.item.eq(order.item),
 
-            read.addr.eq(Mux(counts.asks, counts.region, Cat(self.column, self.row))),
-            counts.element.eq(read.data.element),
-            counts.slot.eq(read.data.slot),
+            read.addr.eq(Mux(order.asks, order.region, Cat(self.column, self.row))),
+            order.element.eq(read.data.element),
+            order.slot.eq(read.data.slot),
             self.element.eq(read.data.element),
 
             write.en.eq(packer.given | dealt.valid),

@@ -12,8 +12,8 @@ class MergeSorter(wiring.Component):
 
     Bottom-up merge sort: a pass merges pairs of neighbouring runs, each sorted, into runs of twice
     the length, from one half of the memory into the other.  What is merged next waits in two
-    registers, one for each run of the pair; an item is written, or given, in one clock and the one
-    behind it read in the next.  The results of the last pass are not written but given.
+    registers, one for each run of the pair; an item is merged in one clock, and the one behind it
+    read in the next.  The results of the last pass are not written but given.
 
     Latency: ``latency`` clocks from the last item to the first that is given; of these a pass, but
     not the last one, takes two for each item and two for each pair.  Throughput: an item a clock
@@ -29,9 +29,8 @@ class MergeSorter(wiring.Component):
 
     Members
     -------
-    put: In(1)
-        ``item`` comes; not before all that were sorted before have been taken.
-    item: In((weight, label))
+    put: In(1), item: In((weight, label))
+        An item comes; not before all that were sorted before have been taken.
     sorted: Out(stream of (weight, label, last))
         ``last`` marks the last one.
 
@@ -45,6 +44,9 @@ class MergeSorter(wiring.Component):
         self.items = items
         self.passes = max(1, (items - 1).bit_length())
         self.layout = data.StructLayout({"weight": weight_bits, "label": label})
+        # Each half has a power of two of places, so that the half is a bit of the address.
+        self.storage = memory.Memory(shape=self.layout, depth=2 << self.passes, init=[],
+                                     attrs={"no_rw_check": 1})
         super().__init__({
             "put": In(1),
             "item": In(self.layout),
@@ -53,16 +55,14 @@ class MergeSorter(wiring.Component):
 
     @property
     def latency(self) -> int:
-        """Three before the first item of a pass, and the clock after the last one that came."""
-        return 4 + sum(2 * self.items + 2 * -(-self.items >> number + 1)
+        """Three before the first item of a pass is merged, and one on either side."""
+        return 5 + sum(2 * self.items + 2 * -(-self.items >> number + 1)
                        for number in range(self.passes - 1))
 
     def elaborate(self, platform):
         m = Module()
-        # Each half has a power of two of places, so that the half is a bit of the address.
-        m.submodules.storage = storage = memory.Memory(
-            shape=self.layout, depth=2 << self.passes, init=[], attrs={"no_rw_check": 1})
-        write, read = storage.write_port(), storage.read_port()
+        m.submodules.storage = self.storage
+        write, read = self.storage.write_port(), self.storage.read_port()
 
         half = Signal()  # the one that is merged
         place = Signal(self.passes)  # of the item that is written or given
@@ -93,12 +93,11 @@ class MergeSorter(wiring.Component):
                           & (right.over | (left.first.weight >= right.first.weight))),
             merged.eq(Mux(takes_left, left.first, right.first)),
             last.eq(place == self.items - 1),
-            self.sorted.payload.weight.eq(merged.weight),
-            self.sorted.payload.label.eq(merged.label),
-            self.sorted.payload.last.eq(last),
             write.addr.eq(Cat(place, ~half)),
             write.data.eq(merged),
         ]
+        with m.If(self.sorted.ready):
+            m.d.sync += self.sorted.valid.eq(0)
         with m.FSM():
             with m.State("FILL"):
                 m.d.comb += [
@@ -120,10 +119,16 @@ class MergeSorter(wiring.Component):
             with m.State("READ"):
                 m.next = "MERGE"
             with m.State("MERGE"):
-                m.d.comb += [self.sorted.valid.eq(gives), write.en.eq(1)]
-                with m.If(~gives | self.sorted.ready):
+                m.d.comb += write.en.eq(1)
+                with m.If(~gives | ~self.sorted.valid | self.sorted.ready):
                     m.d.comb += [left.asks.eq(takes_left), right.asks.eq(~takes_left)]
-                    m.d.sync += place.eq(place + 1)
+                    m.d.sync += [
+                        place.eq(place + 1),
+                        self.sorted.valid.eq(gives),
+                        self.sorted.payload.weight.eq(merged.weight),
+                        self.sorted.payload.label.eq(merged.label),
+                        self.sorted.payload.last.eq(last),
+                    ]
                     m.next = "READ"
                     with m.If(last):
                         m.d.sync += [place.eq(0), half.eq(~half), within.eq(Cat(1, within))]

@@ -387,9 +387,7 @@ class CentralBroadcastController(wiring.Component):
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
-
-        Squares, and regions, are interlaced by equal shares only.
-        """
+        Squares and regions are interlaced by equal shares only."""
         configuration = self.configuration
         response = self.right.response
         units = response_fields(ResponseKind.DOMAIN, response.payload.value).units

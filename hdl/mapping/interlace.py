@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.interlace import Interlace
 
-__all__ = ["PixelAddress", "ScanAddress", "unit_number", "without"]
+__all__ = ["PixelAddress", "ScanAddress", "unit_number", "units_moved", "without"]
 
 
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
@@ -20,8 +20,18 @@ def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
     if interlace.skew_bit is not None and interlace.skew_bit < len(x):
         number[0] ^= x[interlace.skew_bit]
     if interlace.diagonal:
-        return (Cat(number) + y * interlace.diagonal_step)[:interlace.unit_bits]
+        return (Cat(number) + units_moved(interlace, y))[:interlace.unit_bits]
     return Cat(number)
+
+
+def units_moved(interlace: Interlace, row: Value) -> Value:
+    """By how many units a row is moved where they interlace diagonally, modulo their number.
+
+    A product with a constant, written as its sums: synthesis would take a multiplier for the few
+    bits that count, at less than half the clock rate.
+    """
+    step, row = interlace.diagonal_step, row[:interlace.unit_bits]
+    return sum(row << bit for bit in range(step.bit_length()) if step >> bit & 1)
 
 
 def without(value: Value, mask: int) -> Value:

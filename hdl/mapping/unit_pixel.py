@@ -6,6 +6,7 @@ from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.interlace import Interlace
+from .interlace import units_moved
 
 __all__ = ["UnitPixel", "reciprocal_shift"]
 
@@ -28,7 +29,7 @@ def _pixel(interlace: Interlace, unit: Value, column: Value, row: Value) -> tupl
     """x and y from the number of the unit, and the bits of both that name no unit."""
     axes: dict[str, list[Value]] = {}
     if interlace.diagonal:  # whose units are named by x alone
-        unit = unit - row * interlace.diagonal_step
+        unit = unit - units_moved(interlace, row)
     for axis, value in (("x", column), ("y", row)):
         mask = interlace.unit_mask(axis)
         left = iter(Cat(value, C(0, mask.bit_length())))

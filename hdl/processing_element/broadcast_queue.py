@@ -21,9 +21,9 @@ __all__ = ["BroadcastQueue"]
 class BroadcastQueue(wiring.Component):
     """Takes what concerns this processing element, and gives it back in order.
 
-    A triangle that ``ShareFilter`` drops, or ``RegionFilter``, is passed over as it is announced, and costs
-    nothing.  Rows and edges wait apart from the interpolants: those are needed later,
-    pixel by pixel, and stay at their output until a triangle's last one.
+    A triangle that ``ShareFilter`` drops, or ``RegionFilter``, is passed over as it is
+    announced, and costs nothing.  Rows and edges wait apart from the interpolants: those are
+    needed later, pixel by pixel, and stay at their output until a triangle's last one.
 
     Anything but a triangle waits in a place of its own.  Nothing is taken behind it
     until it is gone, so it comes after the triangles before it and before those

@@ -58,7 +58,7 @@ class BandProbes(wiring.Component):
     def elaborate(self, platform):
         m = Module()
         configuration, outline, row = self.configuration, self.outline, self.rows.payload
-        m.submodules.own = own = OwnColumns(configuration=configuration)
+        m.submodules.own_columns = own = OwnColumns(configuration=configuration)
         wiring.connect(m, wiring.flipped(self.regions), own.regions)
         box = region_box(outline, configuration)
         bits = len(self.regions.row)

@@ -23,9 +23,10 @@ class OwnColumns(wiring.Component):
         The tables, and the number that it has in these.
     ask: In(1), row: In(row_bits)
         Read that row of the table in use.
-    some: Out(1), first, last: Out(column_bits)
-        From the next clock until the one after the next ``ask``: it has a region in that row; the
-        columns of its first one and of its last one.
+    some: Out(1)
+        From the next clock until the one after the next ``ask``: it has a region in that row.
+    first: Out(column_bits), last: Out(column_bits)
+        As long, the columns of its first one and of its last one.
     """
 
     latency = 1

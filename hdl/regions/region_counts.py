@@ -23,6 +23,7 @@ class RegionCounts(wiring.Component):
     Members
     -------
     row: In(visited_row_layout)
+        A row that has been walked, if it is ``valid``.
     clear: In(1)
         Every count is 0 from the next clock on.
     start: In(1)
@@ -74,14 +75,15 @@ class RegionCounts(wiring.Component):
             write.data.eq(Mux(again, sum_before, before) + addend),
         ]
 
-        reporting, asked, asks = Signal(), Signal(), Signal()
+        reporting, asked, asks, free = Signal(), Signal(), Signal(), Signal()
         place = Signal(range(slots + 1))
         m.d.comb += [
-            asks.eq(reporting & ~asked & (place != slots) & (~self.counts.valid | self.counts.ready)),
-            self.done.eq(reporting & ~asked & (place == slots) & ~self.counts.valid),
+            free.eq(reporting & ~asked & (~self.counts.valid | self.counts.ready)),
+            asks.eq(free & (place != slots)),
+            self.done.eq(free & (place == slots)),
             read.addr.eq(Mux(reporting, place, slot)),
         ]
-        m.d.sync += [known.eq(counted.bit_select(read.addr, 1)), asked.eq(asks)]
+        m.d.sync += [known.eq(Array(counted)[read.addr]), asked.eq(asks)]
         with m.If(adds):
             m.d.sync += counted.bit_select(adds_to, 1).eq(1)
         with m.If(self.clear):

@@ -59,7 +59,7 @@ class RegionFilter:
         ``triangle`` is a prepared triangle that may be another one in every clock; ``inputs`` has
         the ``members`` as attributes.
         """
-        m.submodules.own = own = OwnRegions(configuration=self.configuration)
+        m.submodules.own_regions = own = OwnRegions(configuration=self.configuration)
         wiring.connect(m, wiring.flipped(inputs.regions), own.regions)
         box = region_box(triangle, self.configuration)
         m.d.comb += [
@@ -67,8 +67,9 @@ class RegionFilter:
             own.column.eq(cut(box.left, len(own.column))),
             own.row.eq(cut(box.top, len(own.row))),
         ]
-        filled, wide, tall, large = (Signal(name=name)
-                                     for name in ("filled", "wide", "tall", "large"))
+        # "large" is a word of Verilog's own.
+        filled, wide, tall, large = (Signal(name=name) for name in (
+            "filled_box", "wide_box", "tall_box", "large_box"))
         m.d.sync += [
             filled.eq((triangle.left < triangle.right) & (triangle.top < triangle.bottom)),
             wide.eq(box.left != box.right),

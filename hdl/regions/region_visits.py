@@ -61,7 +61,7 @@ class RegionVisits(wiring.Component):
         m = Module()
         configuration, lines = self.configuration, self.regions
         triangle, visit = self.triangles.payload, self.visits.payload
-        m.submodules.large = large = LargeVisits(configuration=configuration)
+        m.submodules.larger = large = LargeVisits(configuration=configuration)
         wiring.connect(m, wiring.flipped(lines), large.regions)
 
         visited = Signal(4)

@@ -14,7 +14,7 @@ from ...golden.specification.commands import (
     opcode_of,
 )
 from ...golden.specification.configuration import MachineConfiguration
-from ..frames.conversation import owed_at_boot, owed_to
+from ..frames.conversation import owed_at_boot, owed_to_each
 from .violation import ProtocolError
 
 #: What a cage of nodes says of a picture while it takes commands again.
@@ -57,9 +57,10 @@ class ConversationCheck:
         # How many of both are due before each command, and at the end of each frame.
         self._due_before: list[tuple[int, int]] = []
         ends = [(len(self._answers), 0)]
-        for number, word in enumerate(commands):
+        for number, (word, answers) in enumerate(zip(
+                commands, owed_to_each(organisation, commands), strict=True)):
             self._due_before.append((ends[-1][0], self._presented_before(word, ends)))
-            for owed in owed_to(organisation, word):
+            for owed in answers:
                 if owed.kind in self._apart:
                     self._presented.append(Expected(*owed, number, len(self._answers)))
                 else:

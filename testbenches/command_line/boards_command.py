@@ -19,7 +19,8 @@ from .command_options import Several, Size
 BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-ports",
                "unit-of-chain", "unit-of-tree", "unit-of-snoop", "chain-merge", "tree-merge",
                "snoop-merge", "frame-unit", "element-of-direct", "unit-of-direct", "direct-merge",
-               "direct-merge-2", "direct-merge-element", "setup-fast", "setup-small")
+               "direct-merge-2", "direct-merge-element", "setup-fast", "setup-small",
+               "balancer")
 
 
 @click.command(name="boards")

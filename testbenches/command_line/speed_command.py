@@ -17,7 +17,13 @@ from ..engines.choose_engine import ENGINES, make_engine
 from ..machine_options import SETUPS, MachineOptions
 from ..speed.baseline import against, load_baseline
 from ..speed.cases import DEFAULT_CASES, ORDERS, case_names, check_case
-from ..speed.machines import ALL_MACHINES, MachineAxes, bench_machines, varied
+from ..speed.machines import (
+    ALL_MACHINES,
+    MachineAxes,
+    bench_machines,
+    beside_interlace,
+    varied,
+)
 from ..speed.speed_rows import bench, steps
 from ..speed.speed_table import bench_facts, bench_table, bench_text
 from ..support.atomic_output import atomic_file, output_errors
@@ -69,7 +75,8 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--against", "baseline", type=click.Path(path_type=Path), metavar="FILE",
               help="Compare with the figures that --json wrote earlier.")
 @click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png",
-              help="Also draw the speed along --fifo, --block or --elements.")
+              help="Also draw the speed along --fifo, --block or --elements; with --regions none "
+              "and others, that of regions beside that of interlaced pixels.")
 @click.pass_obj
 def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[Any, ...] | None,
                   everything: bool, engine: str, json_file: Path | None, baseline: Path | None,
@@ -101,9 +108,9 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
     chosen = {name: values for name, values in axes.items() if values is not None}
     standard = vars(ALL_MACHINES) if everything else {}
     machines = bench_machines(MachineAxes(**standard | chosen))
-    if plot is not None and not varied(machines):
+    if plot is not None and not (varied(machines) or beside_interlace(machines)):
         raise InputError("--plot: nothing to draw along; give --fifo, --block or --elements "
-                         "several numbers")
+                         "several numbers, or --regions none and others")
     names = [check_case(case) for case in cases] or list(
         case_names() if everything else DEFAULT_CASES)
     orders = orders or (ORDERS if everything else ORDERS[:1])
@@ -122,10 +129,13 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
             with output_errors(json_file, "--json"):
                 files[json_file].write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
         if plot is not None:
-            from ..speed.speed_chart import bench_chart  # takes a second to load
+            # They take a second to load.
+            from ..speed.region_chart import region_chart
+            from ..speed.speed_chart import bench_chart
 
             with output_errors(plot, "--plot"):
-                bench_chart(rows, files[plot])
+                draw = region_chart if beside_interlace(machines) else bench_chart
+                draw(rows, files[plot])
     if sys.stdout.isatty():
         bench_table(rows)
     else:

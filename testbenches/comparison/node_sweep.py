@@ -29,6 +29,7 @@ from ...golden.specification.card_order import (
 from ...golden.specification.configuration import MachineConfiguration, Packet
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
+from ..frames.region_figures import RegionTables
 from ..frames.setup_timing import setup_timing
 from .cage import Cage, CageJob, CageRun, Refused
 
@@ -97,9 +98,11 @@ class FrameTime:
 
 def predicted_time(configuration: MachineConfiguration, display_list: DisplayList,
                    retained: bool) -> FrameTime:
-    """What the cycle model says."""
+    """What the cycle model says; where regions are dealt out, by what the scene itself costs."""
+    table = (None if configuration.regions is None else
+             RegionTables(configuration, [display_list] * 2).table(1))
     draw = predict_cycles(configuration, display_list, setup=setup_timing(configuration),
-                          retained=retained).cycles
+                          retained=retained, table=table).cycles
     return FrameTime(round(draw), predict_merge(configuration, display_list))
 
 

@@ -23,7 +23,7 @@ __all__ = ["component_for", "describe", "memories"]
 
 #: The four boards and those of their parts that state a latency or a throughput.
 _TIMED = ("central_broadcast_controller", "processing_element", "memory_unit",
-          "video_scan_generator", "triangle_spans", "fragment_stepper", "interpolator",
+          "video_scan_generator", "fragment_stepper", "interpolator",
           "depth_read_back", "response_link", "survey", "frame_tags", "tag_sweep")
 _TIMED_BY_PORTS = {1: ("one_port_depth_test", "one_port_lane", "one_port_memory"),
                    2: ("two_port_depth_test", "two_port_memory")}
@@ -57,7 +57,9 @@ def describe(configuration: MachineConfiguration, verilog: str,
     """
     top = name or "machine"
     modules = _modules(verilog)
-    timed = (name,) if name else (*_TIMED, *_TIMED_BY_PORTS[configuration.memory_ports])
+    walker = "triangle_spans" if configuration.regions is None else "region_spans"
+    timed = (name,) if name else (*_TIMED[:4], walker, *_TIMED[4:],
+                                  *_TIMED_BY_PORTS[configuration.memory_ports])
     if name is None and configuration.setup == "hardware":
         timed += ("triangle_setup",)
     return {

@@ -101,18 +101,18 @@ _COSTS: dict[str, Callable[[MergeCosts], str]] = {
     "bits sent": lambda cost: f"{cost.facts['traffic']['bits']:,}",
     "bits on the busiest link": lambda cost: f"{cost.facts['traffic']['busiest_link']['bits']:,}",
     "memory, bits": lambda cost: f"{cost.facts['memory']['bits']:,}",
-    "LUTs of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.luts:,}"),
-    "MHz of a merge card": lambda cost: _placed(cost, cost.board and f"{cost.board.mhz:.0f}"),
-    "LUTs of the cage": lambda cost: _placed(cost, cost.cage_luts and f"{cost.cage_luts:,}"),
+    "LUTs of a merge card": lambda cost: _placed(cost.board and f"{cost.board.luts:,}"),
+    "MHz of a merge card": lambda cost: _placed(cost.board and f"{cost.board.mhz:.0f}"),
+    "LUTs of all cards": lambda cost: _placed(cost.cage_luts and f"{cost.cage_luts:,}"),
     "fragments a clock": lambda cost: f"{cost.fragments_per_clock:.3f}",
     "fragments a clock for 1,000 LUTs": lambda cost: _placed(
         cost, cost.per_lut and f"{1000 * cost.per_lut:.4f}"),
 }
 
 
-def _placed(cost: MergeCosts, words: Any) -> str:
+def _placed(words: Any) -> str:
     """What was measured of boards that were placed."""
-    return str(words or (ON_REQUEST if cost.cage.boards else NOTHING))
+    return str(words or ON_REQUEST)
 
 
 def _latency(cost: MergeCosts, until: str) -> str:

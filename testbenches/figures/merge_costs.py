@@ -6,7 +6,7 @@ Cages are simulated, lists retained; boards on an ECP5 are those that ``cardcage
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...golden.scene_display_list import SceneDisplayList
@@ -51,11 +51,8 @@ class BoardFigures:
 
 @dataclass(frozen=True)
 class MergeCage:
-    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``.
-
-    There are none of a direct merge, whose crossbar is too large for so many elements to be placed
-    within reason; ``cardcage boards`` has a smaller one.
-    """
+    """``boards``: by the letter of each card what it is placed as, of ``fpga.boards.BOARDS``; those
+    that are of no node, whose size is that of the cage, as they are in this cage."""
 
     merge: str
     cards: str
@@ -63,7 +60,7 @@ class MergeCage:
 
     def luts(self, boards: Mapping[str, BoardFigures]) -> int | None:
         """Of all cards; None where some of them were not measured."""
-        if not self.boards or not all(name in boards for name in self.boards.values()):
+        if not all(name in boards for name in self.boards.values()):
             return None
         return sum(boards[self.boards[card]].luts for card in parse_cards(self.cards))
 
@@ -78,7 +75,9 @@ CAGES = (
     MergeCage(TREE_MERGE, f"{NODES}x(PMMT)", _boards("unit-of-tree", TREE_MERGE, "tree-merge")),
     MergeCage(SNOOP_MERGE, f"{NODES}x(PMMS)FF",
               _boards("unit-of-snoop", SNOOP_MERGE, "snoop-merge") | {FRAME_UNIT: "frame-unit"}),
-    MergeCage(DIRECT_MERGE, f"{NODES}xP D {NODES}xM", {}),
+    MergeCage(DIRECT_MERGE, f"{NODES}xP D {NODES}xM",
+              {PROCESSING_ELEMENT: "element-of-direct", MEMORY_UNIT: "unit-of-direct",
+               DIRECT_MERGE: "direct-merge"}),
 )
 
 
@@ -143,8 +142,10 @@ def board_figures(measure: bool, step: Callable[[str], None]) -> dict[str, Board
     from ..speed.cases import SIZE
 
     found = {}
-    for name in dict.fromkeys(name for cage in CAGES for name in cage.boards.values()):
-        part = BOARDS[name].part("P" + "M" * UNITS, SIZE, SIZE)
+    cages = {name: cage.cards for cage in CAGES for name in cage.boards.values()}
+    for name, cards in cages.items():
+        board = BOARDS[name]
+        part = replace(board, cage=board.cage and cards).part("P" + "M" * UNITS, SIZE, SIZE)
         if measure:
             def board_step(doing: str, name: str = name) -> None:
                 step(f"{name}: {doing}")

@@ -112,4 +112,6 @@ BOARDS = {
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
+    "balancer": Board("balancer, 128 regions, 16 elements", "balancer",
+                      changes={"regions": (16, 8), "balancer": "hardware"}, cage="16x(PMM)"),
 }

@@ -230,9 +230,11 @@ def achieved_mhz(report: dict[str, Any]) -> float:
 
 def _run(tool: str, arguments: Sequence[str], folder: Path) -> None:
     """Run a tool in ``folder``, in a process of its own, which ends with this one."""
-    program = f"import sys, {tool}; sys.exit({tool}.{TOOLS[tool]}(sys.argv[1:]))"
-    done = subprocess.run([sys.executable, "-c", program, *arguments], cwd=folder,
-                          capture_output=True, encoding="utf-8", errors="replace", check=False)
+    # By its text: beside the file are others that a tool might take for its own.
+    program = Path(__file__).with_name("deep_stack.py").read_text(encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", program, tool, TOOLS[tool], *arguments], cwd=folder,
+        capture_output=True, encoding="utf-8", errors="replace", check=False)
     if done.returncode:
         said = [line for line in done.stderr.splitlines() if "ERROR" in line] or [
             f"exit status {done.returncode}"]

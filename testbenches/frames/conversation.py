@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from ...golden.organisations.organisation import Domain, Organisation
@@ -14,6 +14,7 @@ from ...golden.specification.commands import (
     opcode_of,
     response_value,
 )
+from .heard_tables import HeardTables
 
 
 class Owed(NamedTuple):
@@ -82,6 +83,18 @@ def owed_to(organisation: Organisation, word: int) -> list[Owed]:
     if opcode in (Opcode.READ_REGIONS, Opcode.READ_TABLE):
         return _of_regions(organisation, opcode)
     return [Owed(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)]
+
+
+def owed_to_each(organisation: Organisation, words: Iterable[int]) -> Iterator[list[Owed]]:
+    """What answers each of these commands, the first of which comes right after the boot; also
+    where tables of regions are not as they should be."""
+    tables = None
+    if Opcode.REGION in _silent(organisation) and organisation.fault is None:
+        tables = HeardTables(organisation.configuration)
+    for word in words:
+        fault = None if tables is None else tables.take(word)
+        refused = [] if fault is None else [Owed(ResponseKind.ERROR, fault)]
+        yield refused + owed_to(organisation, word)
 
 
 def _silent(organisation: Organisation) -> list[Opcode]:

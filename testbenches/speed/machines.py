@@ -94,6 +94,11 @@ def varied(machines: Sequence[BenchMachine]) -> list[str]:
             if len({getattr(machine, name) for machine in machines}) > 1]
 
 
+def beside_interlace(machines: Sequence[BenchMachine]) -> bool:
+    """Some deal regions out, others interlace pixels."""
+    return len({machine.regions is None for machine in machines}) == 2
+
+
 def _machine(elements: int, units: int, ports: int, setup: SetupChoice, block: int,
              skew: bool | None, fifo: int,
              dealing: tuple[tuple[int, int] | None, Balance]) -> BenchMachine:

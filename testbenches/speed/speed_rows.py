@@ -7,19 +7,25 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from ...golden.balancing.region_counts import utilisation
 from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
 from ...golden.cycles.one_port_lanes import clocks_per_row, scan_shares
 from ...golden.organisations.organisation_of import organisation_of
-from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.configuration import RANGES, MachineConfiguration
 from ..engines.engine import Engine
+from ..frames.region_figures import RegionTables
 from ..frames.setup_timing import setup_timing
 from ..machine_options import MachineOptions
 from .cases import AS_IT_IS, CaseLists, Order, case_lists
 from .machines import BenchMachine
-from .measure import Measurement, measure
+from .measure import Measurement, measure, packed_tables
 
 #: Cases that share a simulation: more save boots, and keep more depths at once.
 _TOGETHER = 4
+
+#: What binds a machine that more triangles waiting would make faster, by so much at least.
+QUEUE = "queue"
+_QUEUE_HELPS = 1.05
 
 #: A list that one-port units bound takes the scan of so many rows at least, and two of the periods
 #: in which it is with each unit.
@@ -33,8 +39,10 @@ class BenchRow:
     ``measured``            None where only the model was asked
     ``predicted``           T(2n) - T(n) by the cycle model
     ``bound``               T(2n) - T(n) at the bounds of both: ``CyclePrediction.bounds``
-    ``binding``             which of those it is, of 2n
+    ``binding``             which of those it is, of 2n; or ``QUEUE``, where more places in that
+                            would help
     ``prediction_seconds``  what the cycle model took
+    ``region_utilisation``  of what is counted of the regions in 3n, by golden; None without regions
     """
 
     machine: BenchMachine
@@ -46,6 +54,7 @@ class BenchRow:
     bound: float
     binding: str
     prediction_seconds: float
+    region_utilisation: float | None = None
 
     @property
     def cycles(self) -> float:
@@ -103,15 +112,34 @@ def _times(configuration: MachineConfiguration, prediction: CyclePrediction) -> 
 def _predicted(machine: BenchMachine, case: CaseLists) -> tuple[CaseLists, BenchRow]:
     """``case``, longer where it must be, and what the model says of that."""
     configuration = machine.configuration
-    setup = setup_timing(configuration)
     began = time.perf_counter()
-    once = predict_cycles(configuration, case.once, setup=setup)
+    tables = packed_tables(configuration, case)
+    once = _once(configuration, case, tables)
     if (times := _times(configuration, once)) > 1:
         case = case.repeated(times)
-        once = predict_cycles(configuration, case.once, setup=setup)
-    twice = predict_cycles(configuration, case.twice, after=case.once, setup=setup)
-    seconds = time.perf_counter() - began
+        tables = packed_tables(configuration, case)
+        once = _once(configuration, case, tables)
+    twice = _twice(configuration, case, tables)
+    predicted, bound, binding = twice.cycles - once.cycles, twice.bound - once.bound, twice.binding
+    if predicted > _QUEUE_HELPS * bound:
+        patient = replace(configuration, fifo_depth=RANGES["fifo_depth"][1])
+        waiting = (_twice(patient, case, tables).cycles - _once(patient, case, tables).cycles)
+        binding = QUEUE if predicted > _QUEUE_HELPS * waiting else binding
     return case, BenchRow(
-        machine, case.title, case.order, case.once.triangles, measured=None,
-        predicted=twice.cycles - once.cycles, bound=twice.bound - once.bound,
-        binding=twice.binding, prediction_seconds=seconds)
+        machine, case.title, case.order, case.once.triangles, measured=None, predicted=predicted,
+        bound=bound, binding=binding, prediction_seconds=time.perf_counter() - began,
+        region_utilisation=None if tables is None else utilisation(
+            tables.counts(1), tables.table(1), configuration.processing_elements))
+
+
+def _once(configuration: MachineConfiguration, case: CaseLists,
+          tables: RegionTables | None) -> CyclePrediction:
+    return predict_cycles(configuration, case.once, setup=setup_timing(configuration),
+                          table=None if tables is None else tables.table(1))
+
+
+def _twice(configuration: MachineConfiguration, case: CaseLists,
+           tables: RegionTables | None) -> CyclePrediction:
+    return predict_cycles(configuration, case.twice, after=case.once,
+                          setup=setup_timing(configuration),
+                          table=None if tables is None else tables.table(1))

@@ -13,7 +13,7 @@ from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..reports.region_facts import region_summary
 from .cases import Order, peers
-from .speed_rows import BenchRow
+from .speed_rows import QUEUE, BenchRow
 
 TITLES: dict[Order, str] = {
     "visible": "every fragment visible",
@@ -58,7 +58,7 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     tables: list[tuple[str, list[tuple[str, ...]]]] = []
     for name, group in groupby(rows, title):
         some = list(group)
-        tables.append((name, [_header(some[0].measured is not None), *map(_cells, some)]))
+        tables.append((name, [_header(some[0]), *map(_cells, some)]))
         observed = [(row.case, row.measured.activity.shares()) for row in some
                     if row.measured is not None and row.measured.activity is not None]
         dealt = [(row.case, row.measured.regions) for row in some
@@ -77,13 +77,17 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     return tables
 
 
-def _header(measured: bool) -> tuple[str, ...]:
-    return (*_COLUMNS, *(_MEASURED_COLUMNS if measured else ()), *(peer.short for peer in peers()))
+def _header(row: BenchRow) -> tuple[str, ...]:
+    return (*_COLUMNS, *(() if row.region_utilisation is None else ("regions",)),
+            *(() if row.measured is None else _MEASURED_COLUMNS),
+            *(peer.short for peer in peers()))
 
 
 def _cells(row: BenchRow) -> tuple[str, ...]:
     cells = [row.case, f"{row.triangles:,}", f"{row.cycles / row.triangles:,.2f}",
              f"{100 * row.bound / row.cycles:.0f} %", row.binding]
+    if row.region_utilisation is not None:
+        cells.append(f"{100 * row.region_utilisation:.0f} %")
     measured, error = row.measured, row.prediction_error
     if measured is not None and error is not None:
         cells += [
@@ -111,6 +115,12 @@ def _notes(rows: Sequence[BenchRow]) -> list[str]:
         f"{of_bound}  Model: how far the cycle model is off.  Busy: fragments per clock and "
         "processing element.",
     ]
+    if any(row.binding == QUEUE for row in rows):
+        said.append("Bound by the queue: with more triangles waiting (--fifo) it would be faster, "
+                    "as the model says.")
+    if any(row.region_utilisation is not None for row in rows):
+        said.append("Regions: how evenly they are dealt out: of what is counted, the mean element's "
+                    "as a part of the busiest one's.")
     predicted = sum(row.prediction_seconds for row in rows)
     simulated = sum(row.measured.seconds for row in rows if row.measured is not None)
     said.append(f"The cycle model took {predicted:.2f} s" + (
@@ -146,6 +156,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
         "prediction_seconds": row.prediction_seconds,
         "bound": {"cycles": row.bound, "binding": row.binding,
                   "share": row.bound / row.cycles},
+        "region_utilisation": row.region_utilisation,
         "peers": {peer.name: peer.cycles_per_triangle[row.case] for peer in peers()
                   if row.case in peer.cycles_per_triangle},
     }

@@ -8,6 +8,9 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from cardcage.golden.cycles.frame_clocks import most_frame_clocks
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification import commands
@@ -16,12 +19,15 @@ from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.display_list import DisplayList
 from cardcage.testbenches.engines.engine import EngineRun, Job, Reset
 from cardcage.testbenches.frames.compare import compare
-from cardcage.testbenches.frames.conversation import Owed, owed_at_boot, owed_to
+from cardcage.testbenches.frames.conversation import Owed, owed_at_boot, owed_to, owed_to_each
 from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.heard_tables import HeardTables
+from cardcage.testbenches.frames.region_host import table_commands
 from cardcage.testbenches.frames.responses import Answers
 
 #: Kind, value and cycle.
 Response: TypeAlias = tuple[ResponseKind, int, int]
+Int64 = NDArray[np.int64]
 
 #: What, where nodes merge on a bus, may be said of a frame while later commands are answered.
 PRESENTED = (ResponseKind.MERGED, ResponseKind.FRAME_SHOWN)
@@ -130,6 +136,7 @@ class Trial:
     ``frames``   the display lists of the good frames, all of them after the last reset
     ``cut``      what is owed from each boot until its reset, of which the rest never comes
     ``owed``     what is owed after the last reset, and ``places`` where in it each frame begins
+    ``tables``   by which regions are dealt out in each, where the host says so
     """
 
     job: Job
@@ -137,6 +144,7 @@ class Trial:
     cut: Sequence[Sequence[Owed]]
     owed: Sequence[Owed]
     places: Sequence[int]
+    tables: Sequence[Int64 | None]
 
 
 def make_trial(configuration: MachineConfiguration, lists: Sequence[DisplayList], seed: int, *,
@@ -146,7 +154,8 @@ def make_trial(configuration: MachineConfiguration, lists: Sequence[DisplayList]
     source = random.Random(f"stray words {seed}")
     organisation = organisation_of(configuration)
     good = [frame_commands(configuration, one) for one in lists]
-    strays = StrayWords(configuration, good[0], source)
+    before = [_about_tables(configuration, number) for number in range(len(lists))]
+    strays = StrayWords(configuration, [*before[0], *good[0]], source)
     words: list[int] = []
     cut, at = [], []
     cycle = 0
@@ -157,14 +166,17 @@ def make_trial(configuration: MachineConfiguration, lists: Sequence[DisplayList]
         cycle += source.choice((source.randrange(1, 60), source.randrange(1, 4000)))
         at.append(Reset(cycle, len(words)))
     kept: list[int] = []
-    owed, places = owed_at_boot(organisation), []
+    owed, begins = owed_at_boot(organisation), []
     for number in range(rounds):
         lost = strays.words(stray)
         frame = [*good[number % len(good)], *READINGS]
-        kept += lost + frame
-        owed += [answer for word in lost for answer in owed_to(organisation, word)]
-        places.append(len(owed))
-        owed += [answer for word in frame for answer in owed_to(organisation, word)]
+        kept += lost + before[number % len(good)]
+        begins.append(len(kept))
+        kept += frame
+    each = list(owed_to_each(organisation, kept))
+    ends = np.cumsum([len(owed), *map(len, each)])
+    places = ends[begins].tolist()
+    owed += [answer for answers in each for answer in answers]
     opcodes = [commands.opcode_of(word) for word in kept]
     job = Job(
         configuration, commands=words + kept, responses=len(owed), memory_seed=seed,
@@ -172,14 +184,38 @@ def make_trial(configuration: MachineConfiguration, lists: Sequence[DisplayList]
         maximum_cycles=cycle + most_frame_clocks(configuration, len(kept))
         + 2 * configuration.cycles_per_scan * opcodes.count(Opcode.FRAME_END)
         + 30 * organisation.depths_read_back * opcodes.count(Opcode.READ_DEPTH))
-    return Trial(job, [lists[number % len(lists)] for number in range(rounds)], cut, owed, places)
+    return Trial(job, [lists[number % len(lists)] for number in range(rounds)], cut, owed, places,
+                 _tables(configuration, kept, begins))
+
+
+def _about_tables(configuration: MachineConfiguration, turn: int) -> list[int]:
+    """Before a good frame: the host deals regions out, or asks how the machine does it."""
+    if configuration.regions is None:
+        return []
+    if configuration.balancer == "hardware":
+        return [commands.command(Opcode.READ_TABLE)]
+    regions, elements = configuration.dealt_regions.count, configuration.processing_elements
+    return table_commands(configuration, (np.arange(regions) + turn) % elements)
+
+
+def _tables(configuration: MachineConfiguration, words: Sequence[int],
+            begins: Sequence[int]) -> list[Int64 | None]:
+    """By which each good frame is drawn, where the host says so: another one than before it, if
+    the words before had begun a frame."""
+    if configuration.regions is None or configuration.balancer == "hardware":
+        return [None] * len(begins)
+    heard, used = HeardTables(configuration), []
+    for word in words:
+        heard.take(word)
+        used.append(np.array(heard.used))
+    return [used[begin] for begin in begins]
 
 
 def _owed(configuration: MachineConfiguration, words: Sequence[int]) -> Iterator[Owed]:
     organisation = organisation_of(configuration)
     yield from owed_at_boot(organisation)
-    for word in words:
-        yield from owed_to(organisation, word)
+    for answers in owed_to_each(organisation, words):
+        yield from answers
 
 
 def check_trial(trial: Trial, run: EngineRun) -> None:
@@ -198,12 +234,15 @@ def check_trial(trial: Trial, run: EngineRun) -> None:
     responses = _by_command(responses, presented)
     organisation = organisation_of(configuration)
     boot = responses[:len(owed_at_boot(organisation))]
+    asked = configuration.dealt_regions.count if configuration.balancer == "hardware" else 0
     answers = sum(len(owed_to(organisation, word))
                   for word in (commands.command(Opcode.FRAME_END), *READINGS))
-    for number, (display_list, place) in enumerate(zip(trial.frames, trial.places, strict=True)):
-        alone = replace(run, responses=[*boot, *responses[place:place + answers]])
-        comparison = compare(configuration, display_list,
-                             Answers(configuration, alone).frame(0, reading=0))
+    for number, (display_list, place, table) in enumerate(zip(
+            trial.frames, trial.places, trial.tables, strict=True)):
+        alone = replace(run, responses=[*boot, *responses[place - asked:place + answers]])
+        found = Answers(configuration, alone)
+        comparison = compare(configuration, display_list, found.frame(
+            0, reading=0, table=found.tables[0] if asked else table))
         assert comparison.equal, f"frame {number}: {comparison.first_difference}"
 
 

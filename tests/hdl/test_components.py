@@ -11,7 +11,8 @@ from cardcage.testbenches.export.verilog import component_ports
 
 def test_every_component_is_a_part_of_a_machine(monkeypatch):
     """Of its class, with its ports: in a machine that sets triangles up, of one kind of memory or
-    the other, of one node or of nodes that merge in one way or the other."""
+    the other, of one node, or of nodes that merge in one way or the other, or that deals regions
+    out."""
     parts = []
     made = wiring.Component.__init__
 
@@ -20,10 +21,12 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
         parts.append(self)
 
     lonely = set(COMPONENTS)
-    for cards, ports in (("PMMPMM", 1), ("PMMPMM", 2), ("PMMC", 1), ("PMMT", 1),
-                         ("PMMSF", 1), ("PPDMM", 2)):
+    for cards, changes in (
+            ("PMMPMM", {}), ("PMMPMM", {"memory_ports": 2}), ("PMMC", {}), ("PMMT", {}),
+            ("PMMSF", {}), ("PPDMM", {"memory_ports": 2}),
+            ("PMMPMM", {"regions": (3, 4), "balancer": "hardware"})):
         configuration = small_machine(cards, 9, 7, shading="gouraud", setup="hardware",
-                                      memory_ports=ports)
+                                      **{"memory_ports": 1} | changes)
         with monkeypatch.context() as patch:
             patch.setattr(wiring.Component, "__init__", note)
             Fragment.get(Machine(configuration=configuration), None)

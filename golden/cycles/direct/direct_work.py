@@ -29,21 +29,23 @@ CROSSBAR_LATENCY = 3
 
 class DirectWork:
     """The triangles of a display list, element after element; ``after`` was drawn before it.
+    ``begin``: as of ``predict_cycles``.
 
     ``primitive``  int64 (n,): which of the list may cover a pixel
     ``bound``      float64 (elements,): as of ``NodeWork``
     """
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
-                 pipeline: Pipeline, after: DisplayList | None = None) -> None:
+                 pipeline: Pipeline, after: DisplayList | None = None,
+                 begin: int | None = None) -> None:
         self._configuration, self._pipeline = configuration, pipeline
         one_port = configuration.memory_ports == 1
         self._streams, self._firsts = joined([
             element_streams(configuration, display_list, node, pipeline, one_port)
             for node in range(configuration.nodes)])
         self.primitive = self._streams.primitive
-        self._ports: UnitPorts = (OnePortUnits(configuration, self._streams, after) if one_port
-                                  else TwoPortUnits(configuration.units))
+        self._ports: UnitPorts = (OnePortUnits(configuration, self._streams, after, begin)
+                                  if one_port else TwoPortUnits(configuration.units))
 
     @property
     def bound(self) -> Float64:

@@ -14,6 +14,7 @@ from ...specification.display_list import DisplayList
 from ...specification.queues import FRAGMENTS_WAITING
 from ..one_port_lanes import scan_share
 from .element_streams import ElementStreams
+from .scan_slots import slots_from
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]
@@ -70,13 +71,13 @@ class TwoPortUnits:
 
 class OnePortUnits:
     """Some fragments wait for a port that has a read of each and, of each that is nearer than all
-    before it, a write, which goes first; and before both the scan, which is taken to come at even
-    distances."""
+    before it, a write, which goes first; and before both the scan (``scan_slots``), which ``begin``
+    clocks before the first clock here began to show its first line."""
 
     latency = 3
 
     def __init__(self, configuration: MachineConfiguration, streams: ElementStreams,
-                 after: DisplayList | None) -> None:
+                 after: DisplayList | None, begin: int | None = None) -> None:
         organisation, units = organisation_of(configuration), configuration.units
         self._place, self._rank = streams.place, streams.rank
         self._nearest = np.full(units * organisation.words, configuration.rank_background)
@@ -85,7 +86,7 @@ class OnePortUnits:
             y, x = np.mgrid[:depth.shape[0], :depth.shape[1]]
             place = organisation.unit(x, y) * organisation.words + organisation.word(x, y)
             self._nearest[place] = depth << configuration.order_bits
-        self._share, self._scan = scan_share(configuration), np.zeros(units)
+        self._share, self._scan = scan_share(configuration), slots_from(configuration, begin)
         self._accesses = np.zeros(units, np.int64)
         self._units = np.arange(units)
         # Fragments that wait, from the place ``_first`` on in a ring, and those that do not show
@@ -115,13 +116,11 @@ class OnePortUnits:
 
     def _clock(self) -> Int64:
         """What the ports do; the fragments read."""
-        self._scan += self._share
-        scans = self._scan >= 1
-        self._scan -= scans
-        write_moves = ~(self._write & scans)
+        scans = next(self._scan)
+        write_moves = ~self._write if scans else np.ones_like(self._write)
         compare_moves = ~self._compare | write_moves
         answer_moves = ~self._answer | compare_moves
-        reads = answer_moves & (self._waiting > self._new) & ~(scans | self._write)
+        reads = answer_moves & (self._waiting > self._new) & ~self._write & (not scans)
         nearer = self._nearer[self._units, self._first]
         found = self._fragment[self._units, self._first][reads]
         self._write = np.where(write_moves, self._compare & self._compare_nearer, self._write)

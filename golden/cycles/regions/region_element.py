@@ -10,6 +10,11 @@ from ..broadcast import Element
 from ..element_latencies import NEVER, Drawn
 from .large_visits import Band, find_visits
 
+#: Clocks from a visit's load until a row is a span, less two in which room for one more shows.
+#: Rows behind a span that waits stay that far behind it, so the next visit is loaded as much
+#: before it goes.
+LOADED_AHEAD = 5
+
 
 @dataclass(frozen=True)
 class TriangleCost:
@@ -48,7 +53,7 @@ class RegionElement:
             self._free = taken + rows
             if accesses is not None:
                 self._drawn = self._ports.take(taken, accesses)
-                self._free = max(self._free, self._drawn.walker)
+                self._free = max(self._free, self._drawn.walker - LOADED_AHEAD)
             return taken
 
         if cost.bands is None:

@@ -187,7 +187,7 @@ def test_narrower_words():
 
 @pytest.mark.parametrize(("fields", "message"), [
     ({"cards": "PMCPMT"}, r"^cards: .*C \(chain merge\) and T \(tree merge\) .*; take merge cards"),
-    ({"cards": "PMCPM"}, r"^cards: .*the last node is not ended; add a C \(chain merge\)"),
+    ({"cards": "PMCPM"}, r"^cards: .*the last node is not ended; put C \(chain merge\)"),
     ({"cards": "PMCPMMC"}, "^cards: nodes of 1 and 2 memory units .*; give all nodes as many"),
     ({"cards": "65x(PMT)"}, "^cards: 65 nodes, at most 64; take fewer, with more"),
     ({"packet": 0}, "^packet: 0 is not a whole number from 1 to [0-9]+, nor contiguous, nor work$"),

@@ -205,6 +205,53 @@ def test_what_a_cage_of_nodes_answers(cards):
         assert [kind.name for kind, _ in owed] == kinds
 
 
+def of_regions(**changes):
+    return MachineConfiguration(**PRESETS["tiny"] | {"cards": "3x(PM)"}, regions=(4, 2), **changes)
+
+
+def test_region_offsets():
+    documented = [(row["field of REGION"], int(row["where it begins"]), int(row["how long"]))
+                  for row in table("field of REGION")]
+    body = layouts.struct_layout(commands.region_layout(of_regions()))
+    assert documented == list(hardware_fields(body, commands.BODY_OFFSET))
+
+
+def test_what_a_cage_with_regions_answers():
+    """Of each kind of response at least one; how many ``owed_to`` says."""
+    header = "command to a cage with regions"
+    for balancer, balance in (("host", "clocks"), ("host", "static"), ("hardware", "clocks")):
+        organisation = organisation_of(of_regions(balancer=balancer, balance=balance))
+        for row in table(header):
+            word = commands.command(Opcode[row[header]])
+            owed = [kind.name for kind, _ in owed_to(organisation, word)]
+            documented = row[f"{balancer}, {balance}"].replace(NOTHING, "").split()
+            assert list(dict.fromkeys(owed)) == documented
+
+
+def test_where_a_pixel_of_a_region_lies():
+    """The formulas of the page, with the interlace that it has for one processing element."""
+    configuration = of_regions(memory_ports=2)
+    organisation = organisation_of(configuration).dealt([2, 0, 0, 1, 2, 2, 1, 0])
+    regions, inside = configuration.dealt_regions, configuration.interlace
+    i, j, u = regions.x_bits, regions.y_bits, configuration.share_bits
+    assert configuration.words == configuration.slots * 2**(i + j - u)
+    y, x = (axis.ravel() for axis in np.mgrid[:16, :16])
+    r = y // 2**j * regions.columns + x // 2**i
+    slot = np.array([0, 0, 1, 0, 1, 2, 1, 2])[r]
+    place = x % 2**i, y % 2**j
+    np.testing.assert_array_equal(
+        organisation.unit(x, y), organisation.table[r] * 2**u + inside.unit(*place))
+    np.testing.assert_array_equal(
+        organisation.word(x, y), slot * 2**(i + j - u) + inside.address(*place))
+
+
+def test_the_fault_of_a_wrong_region():
+    """The page's numbers are those of the faults that the machine answers."""
+    rows = table("ERROR", "the region")
+    assert [Fault(int(row["ERROR"])) for row in rows] == [
+        Fault.TABLE_LATE, Fault.REGION_TWICE, Fault.REGION_TO_NOBODY, Fault.NO_SLOT]
+
+
 def test_frame_start_offsets():
     documented = [(row["field"], int(row["first bit"]), int(row["bits"]))
                   for row in table("field", "first bit")]

@@ -5,12 +5,16 @@ from itertools import product
 
 import numpy as np
 import pytest
+from amaranth.hdl import Fragment
 from amaranth.sim import Simulator
 from hdl_bench.bench import rejects
 
 from cardcage.golden.balancing.balancer_clocks import balancer_clocks
 from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
 from cardcage.hdl.balancing.balancer import Balancer
+from cardcage.hdl.balancing.least_loaded import LeastLoaded
+from cardcage.hdl.balancing.merge_sorter import MergeSorter
+from cardcage.hdl.balancing.region_order import RegionOrder
 
 
 class Cage:
@@ -97,10 +101,11 @@ class Cage:
             await ctx.tick()
             clocks += 1
         ctx.set(dut.counts.payload, pick.getrandbits(self.count_bits))
+        assert ctx.get(dut.busy) and not ctx.get(dut.counts.ready)
         while not ctx.get(dut.done):
-            assert ctx.get(dut.busy) and not ctx.get(dut.counts.ready)
             await ctx.tick()
             clocks += 1
+        assert ctx.get(dut.busy) and not ctx.get(dut.counts.ready)
         await ctx.tick()
         assert not ctx.get(dut.done) and not ctx.get(dut.busy)
         ctx.set(dut.counts.valid, 0)
@@ -125,7 +130,7 @@ def counted(pick, regions):
     one = pick.choice((0, 1, most - 1, most, few[0]))
     return pick.choice((
         lambda: [one] * regions,
-        lambda: [pick.choice((0, 0, most))for _ in range(regions)],
+        lambda: [pick.choice((0, 0, most)) for _ in range(regions)],
         lambda: [pick.choice((0, *few, most)) for _ in range(regions)],
         lambda: [pick.getrandbits(pick.randrange(1, 33)) for _ in range(regions)],
         lambda: sorted((pick.getrandbits(24) for _ in range(regions)), reverse=pick.random() < 0.5),
@@ -133,7 +138,7 @@ def counted(pick, regions):
 
 
 @pytest.mark.parametrize(("columns", "rows", "elements", "slots"), [
-    (5, 3, 4, 5), (16, 8, 16, 10), (7, 9, 64, 2), (10, 13, 3, 130), (1, 17, 17, 1), (4, 4, 1, 16)])
+    (5, 3, 4, 5), (16, 8, 16, 10), (7, 5, 64, 1), (5, 13, 3, 64), (1, 17, 17, 1), (4, 4, 1, 16)])
 def test_random_counts_at_random_times(columns, rows, elements, slots):
     """Ties, nothing counted, and the highest counts among them; all elements, or fewer."""
     seed = f"{columns}x{rows} in {elements}x{slots}"
@@ -142,7 +147,7 @@ def test_random_counts_at_random_times(columns, rows, elements, slots):
     fewest = -(-columns * rows // slots)
     Cage(columns=columns, rows=rows, elements=elements, slots=slots, seed=seed).show(
         [(there, counted(pick, columns * rows))
-         for there in (elements, fewest, pick.randint(fewest, elements)) for _ in range(3)])
+         for there in (elements, fewest, pick.randint(fewest, elements)) for _ in range(2)])
 
 
 @pytest.mark.parametrize(("columns", "rows", "elements", "slots", "there"), [
@@ -154,12 +159,21 @@ def test_clocks(columns, rows, elements, slots, there):
     cage = Cage(columns=columns, rows=rows, elements=elements, slots=slots)
     pick = random.Random("clocks")
     regions = columns * rows
-    cage.show([(there, [pick.getrandbits(32) for _ in range(regions)]),
-               (there, [(1 << 32) - 1] * regions)])
-    assert cage.clocks == [balancer_clocks(regions, there, slots)] * 2
+    cage.show([(there, [pick.getrandbits(32) for _ in range(regions)])])
+    assert cage.clocks == [balancer_clocks(regions, there, slots)]
 
 
-def test_128_regions_and_16_elements_take_less_than_6000_clocks():
+@pytest.mark.parametrize(("regions", "elements", "slots"), [(1, 1, 1), (7, 3, 4), (128, 16, 10)])
+def test_the_clocks_are_those_that_the_parts_state(regions, elements, slots):
+    sorter = MergeSorter(items=regions, weight_bits=1, label=1)
+    Fragment.get(sorter, None)  # Amaranth wants each elaborated
+    # Clocks are numbered from that of the first count on.
+    last_put = elements * slots - 1 + RegionOrder.latency + regions - 1
+    last_given = last_put + sorter.latency + (regions - 1) * (elements + LeastLoaded.overhead)
+    assert balancer_clocks(regions, elements, slots) == last_given + 1
+
+
+def test_128_regions_in_16_elements_take_at_most_6000_clocks():
     assert balancer_clocks(128, 16, 10) <= 6000
 
 

@@ -4,7 +4,7 @@ import random
 from itertools import product
 
 import pytest
-from hdl_bench.bench import Agent, rejects, simulate
+from hdl_bench.bench import Agent, Drive, rejects, simulate
 from hdl_bench.streams import Sink, no_pause, pauses
 
 from cardcage.hdl.balancing.merge_sorter import MergeSorter
@@ -42,7 +42,13 @@ def check(items, weight_bits, sequences, *, sent=no_pause, taken=no_pause):
     dut = MergeSorter(items=items, weight_bits=weight_bits, label=range(max(2, items)))
     sink = Sink(dut.sorted, items * len(sequences), taken)
     source = Sequences(dut, sequences, sink, sent)
-    simulate(dut, source, sink, limit=2_000_000, after=3)
+
+    def power_on(ctx, clock):
+        """What is in the memory may be anything: the heaviest there is would be taken first."""
+        for place in range(dut.storage.depth if clock == 0 else 0):
+            ctx.set(dut.storage.data[place], {"weight": (1 << weight_bits) - 1, "label": 0})
+
+    simulate(dut, Drive(power_on), source, sink, limit=2_000_000, after=3)
     got = [(item.weight, item.label, item.last) for item in sink.items]
     wanted = [(sequence[label], label, rank == items - 1) for sequence in sequences
               for rank, label in enumerate(sorted(range(items), key=lambda at: -sequence[at]))]
@@ -55,7 +61,7 @@ def test_every_sequence_of_small_weights(items, weight_bits):
     check(items, weight_bits, list(product(range(1 << weight_bits), repeat=items)))
 
 
-@pytest.mark.parametrize("items", [7, 8, 9, 31, 32, 33, 100])
+@pytest.mark.parametrize("items", [7, 8, 9, 31, 32, 33, 70])
 @pytest.mark.parametrize("weight_bits", [3, 32])
 def test_random_weights_at_random_times(items, weight_bits):
     """Many equal, ends of the range among them."""
@@ -64,7 +70,7 @@ def test_random_weights_at_random_times(items, weight_bits):
     few = [0, 1, most - 1, most]
     check(items, weight_bits,
           [[pick.choice((pick.choice(few), pick.randint(0, most))) for _ in range(items)]
-           for _ in range(6)],
+           for _ in range(4)],
           sent=pauses(f"sent {items}"), taken=pauses(f"taken {items}"))
 
 

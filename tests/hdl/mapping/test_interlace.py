@@ -6,9 +6,11 @@ import pytest
 from hdl_bench.bench import evaluate
 from hdl_bench.pictures import small_machine
 
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.interlace import interlace_for
 from cardcage.hdl.mapping.interlace import PixelAddress, ScanAddress
 from cardcage.hdl.mapping.lattice import LatticeBlock
+from cardcage.testbenches.export.cell_count import count_cells
 
 UNITS = (1, 2, 4, 8, 16)
 
@@ -284,3 +286,10 @@ def test_diagonally_the_whole_picture_is_one_block():
             assert ctx.get(dut.lattice.as_value()) == 0
 
     evaluate(dut, steps)
+
+
+@pytest.mark.parametrize("units", [4, 16, 64])
+def test_diagonally_nothing_is_multiplied(units):
+    """Where rows are a power of two of words: a multiplier would take half the clock rate."""
+    configuration = MachineConfiguration(cards=f"PD{'M' * units}", width=64, height=64)
+    assert count_cells(ScanAddress(configuration=configuration)).multipliers == 0

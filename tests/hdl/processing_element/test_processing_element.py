@@ -3,9 +3,14 @@
 import random
 
 import pytest
-from amaranth.hdl import Value
-from hdl_bench.bench import Agent, Drive, Watch, simulate
-from hdl_bench.memory import MemoryBusModel
+from hdl_bench.element_card import (
+    FRAME_START,
+    READ_COUNTERS,
+    READ_DEPTH,
+    SURVEY,
+    Bench,
+    draw,
+)
 from hdl_bench.pictures import (
     exact_words,
     prepare,
@@ -13,110 +18,14 @@ from hdl_bench.pictures import (
     random_triangles,
     small_machine,
 )
-from hdl_bench.streams import Sink, Source, pauses
+from hdl_bench.streams import pauses
 
 from cardcage.golden.cycles.element_latencies import PIPELINE
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.golden.specification.queues import SPANS_WAITING
 from cardcage.hdl.backplane.connectors import BroadcastLines
-from cardcage.hdl.backplane.words import Operation
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
-from cardcage.hdl.processing_element.processing_element import ProcessingElement
-
-SURVEY = {"operation": Operation.SURVEY}
-FRAME_START = {"operation": Operation.FRAME_START}
-READ_DEPTH = {"operation": Operation.READ_DEPTH}
-READ_COUNTERS = {"operation": Operation.READ_COUNTERS}
-
-
-def draw(values):
-    return {"operation": Operation.DRAW, "body": {"draw": values}}
-
-
-class Announcer(Agent):
-    """Strobes packets while the card is ready; waits for its done where there is ``None``.
-
-    As the controller does, it looks at done some clocks after a strobe only, and starts a frame
-    in ``memory`` when all is done.
-    """
-
-    def __init__(self, dut, memory, packets, pause=lambda: 0):
-        self.dut = dut
-        self.memory = memory
-        self.packets = list(packets)
-        self.pause = pause
-        self.wait = 0
-        self.settle = 0
-        self.clock = 0
-        self.strobes = []
-        self.dones = []
-
-    @property
-    def finished(self):
-        return not self.packets
-
-    def drive(self, ctx):
-        lines = self.dut.broadcast
-        ctx.set(lines.strobe, 0)
-        if not self.packets or self.settle or self.wait:
-            self.wait = max(0, self.wait - 1)
-            return
-        if self.packets[0] is not None and ctx.get(lines.ready):
-            if self.packets[0] == FRAME_START:
-                assert ctx.get(lines.done)
-                self.memory.start_frame()
-            ctx.set(lines.packet, self.packets.pop(0))
-            ctx.set(lines.strobe, 1)
-            self.strobes.append(self.clock)
-            self.wait = self.pause()
-            if self.packets and self.packets[0] is None:
-                self.settle = BroadcastLines.settle_clocks + 1
-
-    def sample(self, ctx):
-        if self.strobes and self.strobes[-1] == self.clock - 1:
-            assert not ctx.get(self.dut.broadcast.done), "done right after a strobe"
-        waiting = self.packets and self.packets[0] is None and self.settle == 0
-        if waiting and ctx.get(self.dut.broadcast.done):
-            self.packets.pop(0)
-            self.dones.append(self.clock)
-        self.settle = max(0, self.settle - 1)
-        self.clock += 1
-
-
-class Bench:
-    """One card in a slot: number of units to the left, its domain, and what it is told."""
-
-    def __init__(self, configuration, first, end, packets, *, responses=0, seed=0, scan=0.0,
-                 pause=lambda: 0, right=()):
-        self.dut = dut = ProcessingElement(configuration=configuration)
-        self.memory = MemoryBusModel(dut.right.lines, first=first, end=end,
-                                     words=configuration.words, seed=seed, scan=scan,
-                                     depth_bits=configuration.depth_bits,
-                                     ports=configuration.memory_ports)
-        self.announcer = Announcer(dut, self.memory, packets, pause)
-        self.sink = Sink(dut.left.response, responses + len(right), pause)
-        self.source = Source(dut.right.response, right, pause)
-
-        def lines(ctx, clock):
-            ctx.set(dut.left.id, first)
-            ctx.set(dut.total, configuration.units)
-            # What comes from the left is not for it.
-            ctx.set(Value.cast(dut.left.lines.write), -1)
-            ctx.set(Value.cast(dut.left.lines.read), -1)
-
-        def watch(ctx, clock):
-            assert ctx.get(dut.right.id) == first
-            assert ctx.get(dut.left.lines.read_data) == 0
-            assert not ctx.get(dut.left.lines.read_busy) | ctx.get(dut.left.lines.write_busy)
-
-        self.clocks = simulate(dut, Drive(lines), self.announcer, self.memory, self.source,
-                               self.sink, Watch(watch), after=4)
-
-    @property
-    def responses(self):
-        return [(ResponseKind(item.kind), item.value) for item in self.sink.items]
-
 
 MACHINES = {
     "all of two, flat": ("PMM", (0, 2), "flat", {}),

@@ -90,7 +90,7 @@ def run(balance, seed, *, machine="squares", slots=0, visits=300, pause=(no_paus
 
 @pytest.mark.parametrize("balance", ["triangles", "clocks"])
 @pytest.mark.parametrize(("machine", "slots"), [("squares", 0), ("squares", 64), ("wide", 25),
-                                                ("few", 2), ("few", 3)])
+                                                ("few", 2), ("few", 3), ("one each", 1)])
 def test_each_slot_has_its_sum(balance, machine, slots):
     run(balance, f"{machine} {slots}", machine=machine, slots=slots,
         pause=[pauses(f"{end} {slots}") for end in range(3)])
@@ -102,4 +102,4 @@ def test_a_row_a_clock_and_a_report_every_other_clock(balance):
     slots = configuration.slots
     begins = report.started[0]
     assert sink.clocks[:slots] == [begins + 3 + 2 * slot for slot in range(slots)]
-    assert report.clocks == [2 * slots + 2] * 2
+    assert report.clocks == [2 * slots + 1] * 2

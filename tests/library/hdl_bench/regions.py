@@ -1,28 +1,37 @@
-"""Machines whose regions are dealt out, the lines that deal them, and visits by the definition."""
+"""Machines whose regions are dealt out, the lines that deal them, and visits as golden has them."""
 
 import random
 from dataclasses import dataclass
 
 import numpy as np
 
+from cardcage.golden.balancing.region_grid import RegionGrid
+from cardcage.golden.balancing.region_visits import region_visits
 from cardcage.golden.organisations.region_table import slots_of
+from cardcage.golden.reference.coverage import Triangles
+from cardcage.golden.specification.sampling_grid import Grid
 
 from .bench import Agent
 from .pictures import prepare, prepared_values, small_machine
 
-#: Cards, picture, columns and rows of regions: squares, strips, one row or column at the edge.
+#: Cards, picture, columns and rows of regions, slots (0: as many as there are by themselves):
+#: squares, strips, regions that reach beyond the picture, one region for each element.
 MACHINES = {
-    "squares": ("3x(PM)", (32, 32), (8, 8)),
-    "wide": ("2x(PMM)", (37, 19), (5, 10)),
-    "columns": ("3x(PM)", (24, 20), (12, 1)),
-    "rows": ("4x(PM)", (20, 24), (1, 12)),
-    "few": ("2x(PMMMM)", (16, 9), (2, 2)),
+    "squares": ("3x(PM)", (32, 32), (8, 8), 0),
+    "wide": ("2x(PMM)", (37, 19), (5, 10), 25),
+    "columns": ("3x(PM)", (24, 20), (12, 1), 0),
+    "rows": ("4x(PM)", (20, 24), (1, 12), 0),
+    "few": ("2x(PMMMM)", (16, 9), (2, 2), 0),
+    "one each": ("4x(PM)", (16, 16), (2, 2), 1),
 }
+
+#: Where no box is large.
+NEVER_LARGE = ("few", "one each")
 
 
 def region_machine(name, **changes):
-    cards, size, regions = MACHINES[name]
-    return small_machine(cards, *size, regions=regions, **changes)
+    cards, size, regions, slots = MACHINES[name]
+    return small_machine(cards, *size, regions=regions, **{"slots": slots} | changes)
 
 
 def random_table(configuration, seed):
@@ -33,23 +42,41 @@ def random_table(configuration, seed):
     return np.array(places[:configuration.dealt_regions.count])
 
 
-class Deal(Agent):
-    """Writes ``tables`` one after the other, each into the bank that is not in use and then used.
+def region_words(configuration, table):
+    """What the lines say of each region of a table."""
+    columns, slots = configuration.dealt_regions.columns, slots_of(table)
+    return [{"column": region % columns, "row": region // columns, "element": int(element),
+             "slot": int(slots[region])} for region, element in enumerate(table)]
 
-    ``lines`` are those of a component.  Agents that need a table wait for ``clocks``.
+
+class RegionDriver(Agent):
+    """Sets the ``lines`` of a component: a word, or nothing, and the table in use."""
+
+    def __init__(self, lines):
+        self._lines = lines
+
+    def say(self, ctx, word, table):
+        """``word`` goes into the table that is not in use."""
+        for name, value in {"valid": word is not None, "bank": 1 - table, "table": table,
+                            **(word or {})}.items():
+            if len(getattr(self._lines, name)):
+                ctx.set(getattr(self._lines, name), value)
+
+
+class Deal(RegionDriver):
+    """Writes ``tables`` one after the other, each of which is used once it is there.
+
+    ``element`` is the component's input of that name, ``number`` its value.  Agents that need the
+    last table wait for ``clocks``.
     """
 
-    def __init__(self, lines, configuration, tables, element=None, number=0):
-        self._lines, self._element, self._number = lines, element, number
-        columns = configuration.dealt_regions.columns
+    def __init__(self, lines, configuration, tables, element, number):
+        super().__init__(lines)
+        self._element, self._number = element, number
         self._words = []
-        for bank, table in enumerate(tables):
-            slots = slots_of(table)
-            self._words += [
-                {"valid": 1, "bank": (bank + 1) & 1, "column": region % columns,
-                 "row": region // columns, "element": int(element), "slot": int(slots[region]),
-                 "table": bank & 1} for region, element in enumerate(table)]
-            self._words += [{"valid": 0, "table": (bank + 1) & 1}]
+        for place, table in enumerate(tables):
+            self._words += [(word, place & 1) for word in region_words(configuration, table)]
+        self._words.append((None, len(tables) & 1))
         self.clocks = len(self._words)
         self._clock = 0
 
@@ -58,14 +85,30 @@ class Deal(Agent):
         return self._clock >= self.clocks
 
     def drive(self, ctx):
-        if self._element is not None:
-            ctx.set(self._element, self._number)
-        if self._clock < self.clocks:
-            for name, value in self._words[self._clock].items():
-                port = getattr(self._lines, name)
-                if len(port):
-                    ctx.set(port, value)
+        ctx.set(self._element, self._number)
+        if not self.finished:
+            self.say(ctx, *self._words[self._clock])
         self._clock += 1
+
+
+class DealFrames(RegionDriver):
+    """Writes the table of each frame while the one before is drawn; its start waits for it."""
+
+    def __init__(self, dut, announcer, tables):
+        super().__init__(dut.regions)
+        self._announcer = announcer
+        self._tables = [region_words(dut.configuration, table) for table in tables]
+        self._left = list(self._tables[0])
+        self._frames = 0
+        announcer.may_start = lambda: not self._left
+
+    def drive(self, ctx):
+        if self._announcer.frames > self._frames:
+            self._frames += 1
+            self._left = list(self._tables[self._frames]) if self._frames < len(
+                self._tables) else []
+        # The first table is written into bank 0.
+        self.say(ctx, self._left.pop(0) if self._left else None, 1 - (self._frames & 1))
 
 
 @dataclass(frozen=True)
@@ -113,6 +156,12 @@ class Dealt:
         self.prepared = prepare(configuration, display_list)
         self.values = prepared_values(configuration, self.prepared)
         self.boxes = [self._box(value) for value in self.values]
+        self._visits = [[] for _ in self.values]  # region, rows, fragments
+        for visits in region_visits(Triangles.of(display_list, Grid.of(display_list)),
+                                    RegionGrid.of(self.regions)):
+            for triangle, *visit in zip(visits.triangle, visits.region, visits.rows,
+                                        visits.fragments, strict=True):
+                self._visits[triangle].append(tuple(map(int, visit)))
 
     def _box(self, value):
         x, y = self.regions.x_bits, self.regions.y_bits
@@ -148,20 +197,20 @@ class Dealt:
         value, bits = self.values[index], self.regions.y_bits
         return range(max(value["top"], row << bits), min(value["bottom"], row + 1 << bits))
 
+    def extents(self, index, row):
+        """(y, first, beyond) of each."""
+        return [(y, *row_extent(self.prepared, index, y, self.configuration.width))
+                for y in self.band(index, row)]
+
     def visits(self, index):
-        left, right, top, bottom = self.boxes[index]
-        width, bits = self.configuration.width, self.regions.x_bits
-        found = []
-        for row in range(top, bottom + 1):
-            extents = [(y, *row_extent(self.prepared, index, y, width))
-                       for y in self.band(index, row)]
-            least = min(first for _, first, _ in extents)
-            most = max(beyond for *_, beyond in extents)
-            for column in range(left, right + 1):
-                begin, end = column << bits, column + 1 << bits
-                meets = least < most and begin < most and least < end
-                if self.own(column, row) and (meets or not self.large(index)):
-                    slot = int(self.slots[row * self.regions.columns + column])
-                    found.append(Visit(column, row, slot, tuple(
-                        (y, max(first, begin), min(beyond, end)) for y, first, beyond in extents)))
+        """Those that golden knows, its own ones; with the rows of each, from the exact edges."""
+        found, bits = [], self.regions.x_bits
+        for region, rows, fragments in self._visits[index]:
+            row, column = divmod(region, self.regions.columns)
+            if self.own(column, row):
+                visit = Visit(column, row, int(self.slots[region]), tuple(
+                    (y, max(first, column << bits), min(beyond, column + 1 << bits))
+                    for y, first, beyond in self.extents(index, row)))
+                assert (len(visit.rows), visit.pixels) == (rows, fragments)
+                found.append(visit)
         return found

@@ -4,13 +4,26 @@ by the cycle model, whose traffic is the machine's to the pixel."""
 from __future__ import annotations
 
 import pytest
-from node_frames import CLEAR_LISTS, compiled, frames, immediate, loads, redrawn
+from node_frames import (
+    CLEAR_LISTS,
+    READ_COUNTERS,
+    READ_DEPTH,
+    check_merged,
+    compiled,
+    frames,
+    immediate,
+    loads,
+    redrawn,
+    run,
+)
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.merge_clocks import predict_merge
 from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.commands import ResponseKind
+from cardcage.testbenches.frames.responses import Answers
 
 #: Of the clocks to merge, or to draw.
 ACCURACY = 0.02
@@ -28,6 +41,15 @@ CROSSBARS = {
     "more units than elements": ("3xP D 8xM", {"memory_ports": 2, "packet": "contiguous"}),
     # Nobody tells the model where the scan is, so it must not have much of a port.
     "units with one port": ("4xP D 4xM", {"memory_ports": 1, "clocks_per_pixel": 6}),
+}
+
+#: Crossbars before units with one port, where the model is told where the scan is.
+SCANNED = {
+    "one of each, half of whose clocks are the scan's": ("PDM", {}),
+    "two for two": ("PPDMM", {"packet": "contiguous"}),
+    "four for four, one queue for each element": ("4xP D 4xM", {"queue": "element"}),
+    "a coarser picture": ("3xP D 4xM", {"words": 256, "queue": 2}),
+    "few clocks of the scan's": ("4xP D 2xM", {"clocks_per_pixel": 5}),
 }
 
 
@@ -85,3 +107,47 @@ def test_drawing_through_a_crossbar(cage, record_property):
     record_property("measured", f"{cards}, {cage}: drawing through a crossbar is predicted within "
                                 f"{max(errors):.1%}")
     assert max(errors) <= ACCURACY
+
+
+def frame_words(machine, listed, retained):
+    return ([CLEAR_LISTS, *loads(machine, listed), *redrawn(machine, listed)] if retained
+            else immediate(machine, listed))
+
+
+@pytest.mark.parametrize("cage", SCANNED)
+def test_drawing_into_units_that_the_scan_reads(cage, record_property):
+    """Wherever the scan is as a frame begins: right after the last one was shown, in blanking, or
+    some lines further."""
+    cards, options = SCANNED[cage]
+    *_, many = lists = [*scenes()][1:]
+    lists.append(many.chosen(range(40)))
+    machine = machine_of(cards, many, list_words=200, memory_ports=1, **options)
+    # Depths that are read between frames put the next one off.
+    ways = [(retained, asks, listed) for listed in lists
+            for retained, asks in ((False, []), (True, [READ_DEPTH]), (False, [READ_DEPTH] * 2))]
+    words = [word for retained, asks, listed in ways
+             for word in [*asks, *frame_words(machine, listed, retained)]]
+    answered = run(machine, [*words, READ_DEPTH, READ_COUNTERS], compiled())
+    last = Answers(machine, answered).frame(
+        len(ways) - 1, reading=sum(asks.count(READ_COUNTERS) for _, asks, _ in ways),
+        read_back=sum(asks.count(READ_DEPTH) for _, asks, _ in ways))
+    check_merged(machine, lists[-1], last)
+    drawn = [(clocks, cycle) for kind, clocks, cycle in answered.responses
+             if kind == ResponseKind.FRAME_DRAWN]
+    errors, begins = [], []
+    for (clocks, cycle), (retained, _, listed) in zip(drawn, ways, strict=True):
+        begins.append((cycle - clocks - first_line(machine)) % machine.cycles_per_scan)
+        predicted = predict_cycles(machine, listed, retained=retained, begin=begins[-1]).cycles
+        errors.append(accuracy(predicted, clocks))
+    assert len(set(begins)) > 2
+    record_property("measured", f"{cards}, {cage}: drawing into units with one port is predicted "
+                                f"within {max(errors):.1%}")
+    assert max(errors) <= ACCURACY
+
+
+def first_line(machine):
+    """Clocks from the beginning of a scan until it fetches the first pixel."""
+    timing = machine.timing
+    return machine.clocks_per_pixel * (
+        timing.horizontal_sync + timing.horizontal_back
+        + (timing.vertical_sync + timing.vertical_back) * timing.horizontal_total)

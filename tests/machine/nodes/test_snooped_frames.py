@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frames import SCREEN, expected_video, golden_picture, random_list, triangles
+from frame_paces import cycles_of, pace, screens, values_of
+from frames import expected_video, golden_picture, random_list
 from node_frames import (
     CLEAR_LISTS,
     READ_COUNTERS,
@@ -27,14 +28,6 @@ from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.frames.responses import Answers
 
 BUSES = ("bus of four, vertices", "bus of three, two ports", "bus of two of two elements")
-
-
-def cycles_of(answered, kind):
-    return [cycle for found, _, cycle in answered.responses if found == kind]
-
-
-def values_of(answered, kind):
-    return [value for found, value, _ in answered.responses if found == kind]
 
 
 def seen(machine, lists, answered):
@@ -80,16 +73,6 @@ def test_frames_that_overlap(name, retained, stall_seed):
         drawn, merged = (cycles_of(answered, kind) for kind in (ResponseKind.FRAME_DRAWN,
                                                                 ResponseKind.MERGED))
         assert any(drawn[number + 1] < shown for number, shown in enumerate(merged[:-1]))
-
-
-def screens(machine, count, seed, depths):
-    """Triangles over the whole screen, of which the nodes that draw them hide all or none."""
-    source = np.random.default_rng(seed)
-    depth = {"rising": 100 + np.arange(count), "falling": 4000 - np.arange(count)}[depths]
-    return triangles([np.array(SCREEN) * [machine.width / 8, machine.height / 8]] * count,
-                     depth[:, np.newaxis].repeat(3, axis=1),
-                     source.integers(0, 256, (count, 1, 3)).repeat(3, axis=1),
-                     width=machine.width, height=machine.height)
 
 
 def bar(machine, pixels):
@@ -162,7 +145,6 @@ PACES = {
     "merging": ("8x(PMS)F", 2, 8, "falling"),
     "a scan": ("2x(PMMPMMS)FF", 8, 2, "rising"),
 }
-FRAMES = 8
 
 
 @pytest.mark.parametrize("retained", [False, True])
@@ -175,23 +157,7 @@ def test_a_frame_takes_what_takes_longest(bound, retained, record_property):
     machine = wide_machine(random_list(0, 4, **size), cards=cards, clocks_per_pixel=clocks,
                            memory_ports=2, fraction_bits=40, packet=1,
                            list_words=64 if retained else 0)
-    listed = screens(machine, count, 2, depths)
-    frame = redrawn(machine, listed) if retained else immediate(machine, listed)
-    words = [*([CLEAR_LISTS, *loads(machine, listed)] if retained else []), *frame * FRAMES,
-             READ_DEPTH, READ_COUNTERS]
-    answered = run(machine, words, compiled())
-    check_merged(machine, listed, Answers(machine, answered).frame(FRAMES - 1, reading=0,
-                                                                  read_back=0))
-    times = cycles_of(answered, ResponseKind.MERGED)
-    drawn, merged = (values_of(answered, kind) for kind in (ResponseKind.FRAME_DRAWN,
-                                                            ResponseKind.MERGED))
-    time = (times[-1] - times[1]) / (FRAMES - 2)
-    draw = drawn[0]
-    merge = merged[0] - drawn[0]
-    scans = -(-max(draw, merge) // machine.cycles_per_scan) * machine.cycles_per_scan
-    record_property("measured", f"{cards}{', lists' * retained}: a frame in {time:.0f} clocks, "
-                    f"drawn in {draw}, merged in {merge}, a scan in {machine.cycles_per_scan}: "
-                    f"bound by {bound}")
-    assert time <= 1.05 * max(draw, merge) or time == scans
-    longest = {"drawing": draw, "merging": merge, "a scan": machine.cycles_per_scan}
-    assert max(longest, key=longest.get) == bound
+    found = pace(machine, screens(machine, count, 2, depths), retained=retained)
+    record_property("measured", f"{cards}{', lists' * retained}: {found}")
+    assert found.frame <= 1.05 * max(found.draw, found.merge) or found.frame == found.scans
+    assert found.bound == bound

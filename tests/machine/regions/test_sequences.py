@@ -28,7 +28,7 @@ def listed(count, size, seed, shading="flat"):
 
 
 #: Small triangles and large ones, and so many that the picture is late.
-LISTS = [listed(*numbers) for numbers in ((14, 9, 1), (700, 12, 2), (9, 60, 3), (40, 7, 4))]
+LISTS = [listed(*numbers) for numbers in ((14, 9, 1), (4200, 9, 2), (9, 60, 3), (40, 7, 4))]
 
 #: Where elements times slots are as many as the regions, all are full whatever the table.
 MACHINES = {
@@ -54,7 +54,7 @@ def test_every_picture_and_every_count(fields):
     configuration = plan(LISTS, clocks_per_pixel=2, **fields).configuration
     for options in ({"depths": "last"},
                     {"depths": "all", "stall_seed": 5, "memory_seed": 6}):
-        frames = list(simulate_sequence(configuration, LISTS, "verilator", triangles=700,
+        frames = list(simulate_sequence(configuration, LISTS, "verilator", triangles=4200,
                                         **options))
         for frame in frames:
             assert frame.equal and frame.wrong_scans == 0, (frame.number, options)

@@ -46,6 +46,9 @@ KINDS = [
     {"cards": "2x(PMT)", "setup": "host", "memory_ports": 2},
     {"cards": "2x(PMS)F", "setup": "host", "memory_ports": 2},
     {"cards": "PPDM", "setup": "host", "memory_ports": 1, "queue": "element"},
+    {"cards": "3x(PM)", "setup": "host", "memory_ports": 2, "regions": (4, 2), "shading": "flat"},
+    {"cards": "2x(PMM)", "setup": "small", "memory_ports": 1, "regions": (2, 2),
+     "balancer": "hardware"},
 ]
 
 
@@ -87,6 +90,31 @@ def test_the_checks_take_it(kind):
     run.responses.insert(place, (ResponseKind.ERROR, Fault.UNKNOWN_COMMAND,
                                  run.responses[place][2]))
     with pytest.raises(ProtocolError, match="FRAME_DRAWN is due"):
+        talk(configuration, job.commands, run)
+
+
+@pytest.mark.parametrize(("kind", "value", "said"), [
+    (ResponseKind.REGION_COUNT, None, "before its command|FRAME_DRAWN is due"),
+    (ResponseKind.REGION_COUNT, 1 << 20, "REGION_COUNT cannot be that large"),
+    (ResponseKind.TABLE_ENTRY, 3, "TABLE_ENTRY cannot be that large")], ids=str)
+def test_what_is_said_of_regions(kind, value, said):
+    """Of a table before the frame, and of counts and tables that cannot be."""
+    loaded, configuration = machine_for_scene(SCENE, MachineOptions(
+        size=(8, 8), cards="3x(PM)", regions=(4, 2),
+        balancer="hardware" if kind == ResponseKind.TABLE_ENTRY else "host"))
+    table = None if configuration.balancer == "hardware" else [2, 1, 0, 2, 1, 0, 2, 1]
+    job = frame_job(configuration, loaded.display_list, stall_seed=3, table=table)
+    run = PysimEngine().run(job)
+    assert talk(configuration, job.commands, run).complete
+    place = next(number for number, (found, *_) in enumerate(run.responses) if found == kind)
+    entry = run.responses[place]
+    if value is None:  # it comes before the picture is drawn
+        drawn = next(number for number, (found, *_) in enumerate(run.responses)
+                     if found == ResponseKind.FRAME_DRAWN)
+        run.responses.insert(drawn, (kind, 0, run.responses[drawn][2]))
+    else:
+        run.responses[place] = (kind, value, entry[2])
+    with pytest.raises(ProtocolError, match=said):
         talk(configuration, job.commands, run)
 
 
@@ -135,6 +163,7 @@ def simulator():
 @pytest.mark.parametrize("options", [
     ["--cards", "PM", "--setup", "small"],
     ["--cards", "PMM", "--skew", "--memory-ports", "1", "--words", "4"],
+    ["--cards", "3x(PM)", "--regions", "2x2", "--memory-ports", "2"],
 ], ids=lambda options: "-".join(options).replace("--", ""))
 def test_from_export_to_the_verdict(tmp_path, simulator, options):
     """As the page says: export a machine for a list, check it, be told that it is equal."""

@@ -80,6 +80,29 @@ def test_the_options_in_words():
                                      "--balancer", "hardware"]
 
 
+def test_pictures_of_a_machine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("render", SCENE, "--size", "8x8", "--cards", "3x(PM)", "--regions", "4x2",
+                 "--frames", 2, "--balancer", "hardware", "--engine", "pysim")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("equal: 2 pictures, 128 colours and 64 depths compared")
+    assert "  regions     4x2 of 2x4 pixels, balanced by clocks, by the hardware; utilisation " in (
+        result.stdout)
+    assert result.stderr == ""
+
+
+def test_cages_side_by_side(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",
+                 "--engine", "pysim", "--json")
+    assert result.exit_code == 0, result.output
+    facts = json.loads(result.stdout)
+    assert facts["identical"] and facts["pictures"] == [["PM", "3x(PM)/4x2"]]
+    alone, dealt = facts["cages"]
+    assert alone["regions"] is None and dealt["regions"]["equal"]
+    assert dealt["machine"]["regions"] == [4, 2] and dealt["cycles"]["draw"] > 0
+
+
 def test_a_plan():
     result = run("plan", SCENE, "--size", "32x32", "--cards", "3x(PMM)", "--regions", "4x4",
                  "--json")

@@ -1,10 +1,10 @@
-"""From counts slot by slot to counts region by region."""
+"""Counts that come slot by slot, put in the order of the regions."""
 
 from amaranth.hdl import *
 from amaranth.lib import data, memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-__all__ = ["RegionCounts", "region_shape"]
+__all__ = ["RegionOrder", "region_shape"]
 
 
 def region_shape(*, columns: int, rows: int) -> data.StructLayout:
@@ -16,7 +16,7 @@ def region_shape(*, columns: int, rows: int) -> data.StructLayout:
     return data.StructLayout({"column": range(columns), "row": range(rows)})
 
 
-class RegionCounts(wiring.Component):
+class RegionOrder(wiring.Component):
     """Takes a count for each slot of each processing element, from left to right, and gives the
     count of each region, row by row.
 
@@ -43,10 +43,8 @@ class RegionCounts(wiring.Component):
         Where does it lie?
     element: In(range(elements + 1)), slot: In(range(slots))
         There; a clock later.
-    put: Out(1)
-        ``item`` is said in this clock.
-    item: Out((weight, label))
-        The count and the name of a region.
+    put: Out(1), item: Out((weight, label))
+        In this clock a region's count, and its name, are given.
 
     Raises ``ValueError`` for a number that is not positive.
     """
