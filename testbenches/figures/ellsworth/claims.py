@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
 
 from ..verdict import Summary, Verdict, together
-from .dealing import LAST, STATIC, TRIANGLES
+from .dealing.dealing_job import LAST, STATIC, TRIANGLES
+from .dealing.model_dealing import ModelDealing
+from .dealing.screen_grids import RATIOS as ALL_RATIOS
 from .frame_time import (
     PAPERS,
     RATIOS,
@@ -15,9 +17,7 @@ from .frame_time import (
     best_where_sending_costs,
     mean_times,
 )
-from .model_dealing import ModelDealing
 from .overlap import SHAPE_SIDE, Overlap
-from .screen_grids import RATIOS as ALL_RATIOS
 
 #: Of utilisation, that count as none.
 NEAR = 0.01

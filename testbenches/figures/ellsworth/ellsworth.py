@@ -12,12 +12,12 @@ from typing import Any
 from ....golden.specification.errors import InputError
 from ...engines.choose_engine import AUTO, make_engine
 from ...support.processes import cores, in_processes
-from .dealing import DealingJob
+from .dealing.dealing_job import DealingJob
+from .dealing.model_dealing import ModelDealing, dealing_jobs, model_dealing
+from .dealing.models import FigureModel, Size, figure_models
+from .dealing.screen_grids import LEAST_SIDE, processors_for
 from .in_rtl import Point, PointJob, point_jobs
-from .model_dealing import ModelDealing, dealing_jobs, model_dealing
-from .models import FigureModel, Size, figure_models
 from .overlap import Overlap, OverlapJob, overlap_jobs
-from .screen_grids import LEAST_SIDE, processors_for
 
 #: The paper's screen.
 DEFAULT_SIZE = (640, 512)

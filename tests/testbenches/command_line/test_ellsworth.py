@@ -13,10 +13,10 @@ from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.figures.ellsworth import in_rtl, overlap
 from cardcage.testbenches.figures.ellsworth.claims import SQUARE
-from cardcage.testbenches.figures.ellsworth.cures import CURES
+from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES
+from cardcage.testbenches.figures.ellsworth.dealing.models import FigureModel
 from cardcage.testbenches.figures.ellsworth.ellsworth import EllsworthOptions, redraw_ellsworth
 from cardcage.testbenches.figures.ellsworth.facts import PAPER
-from cardcage.testbenches.figures.ellsworth.models import FigureModel
 from cardcage.testbenches.figures.ellsworth.page import FIGURE_FILES
 
 FACTS = ["paper", "command_line", "size", "equal", "differences", "processors", "ratios", "models",
@@ -34,7 +34,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.setenv("CARDCAGE_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr("cardcage.testbenches.support.processes.cores", lambda: 1)
     monkeypatch.setattr(overlap, "COUNT", 500)
-    monkeypatch.setattr(in_rtl, "POINT_PROCESSORS", (2, 3))
+    monkeypatch.setattr(in_rtl, "POINT_PROCESSORS", (2, 4))
     return tmp_path
 
 
@@ -87,7 +87,7 @@ def test_with_machines(place, machine):
     assert result.exit_code == 0, result.output
     facts = json.loads(result.stdout)
     assert facts == json.loads((place / "cardcage-out/ellsworth.json").read_text("utf-8"))
-    assert [point["processors"] for point in facts["points"]] == [2, 3]
+    assert [point["processors"] for point in facts["points"]] == [2, 4]
     assert all(point["equal"] and point["utilisation"] == point["golden"]
                for point in facts["points"])
     page = (place / "cardcage-out/ellsworth.html").read_text("utf-8")

@@ -5,13 +5,13 @@ from itertools import product
 
 from cardcage.testbenches.figures.ellsworth import claims
 from cardcage.testbenches.figures.ellsworth.claims import claims_of, claims_of_overlap, summary
-from cardcage.testbenches.figures.ellsworth.cures import CURES, LAST
-from cardcage.testbenches.figures.ellsworth.dealing import HOW
+from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES, LAST
+from cardcage.testbenches.figures.ellsworth.dealing.dealing_job import HOW
+from cardcage.testbenches.figures.ellsworth.dealing.model_dealing import ModelDealing
+from cardcage.testbenches.figures.ellsworth.dealing.models import FigureModel
+from cardcage.testbenches.figures.ellsworth.dealing.screen_grids import RATIOS
 from cardcage.testbenches.figures.ellsworth.findings import best_cure, findings
-from cardcage.testbenches.figures.ellsworth.model_dealing import ModelDealing
-from cardcage.testbenches.figures.ellsworth.models import FigureModel
 from cardcage.testbenches.figures.ellsworth.overlap import Overlap
-from cardcage.testbenches.figures.ellsworth.screen_grids import RATIOS
 
 PROCESSORS = (2, 32, 512)
 
@@ -42,9 +42,10 @@ def outcomes(found):
 
 def test_as_in_the_paper():
     found = outcomes(model())
+    assert found.pop(claims.EIGHT) is False  # a steep curve: 12 is far better
     assert found == dict.fromkeys((
         claims.RISES, claims.FALLS, claims.DROPS, claims.LARGER, claims.UNBALANCED, claims.OVERLAPS,
-        claims.SENDS, claims.EIGHT), True)
+        claims.SENDS), True)
     numbers = {verdict.claim: verdict.numbers for verdict in claims_of(model())}
     assert numbers[claims.DROPS].startswith("by triangles at most 7 points on 512 processors")
     assert numbers[claims.LARGER] == (
@@ -67,6 +68,7 @@ def test_the_ratio_that_is_best():
     assert not outcomes(model(lambda n, ratio, how: 0.9, best_ratio=12))[claims.BEST]
     assert claims.BEST not in outcomes(model())
     assert not outcomes(even)[claims.SENDS]  # it is the least whatever sending costs
+    assert outcomes(model(lambda n, ratio, how: 0.9 if ratio == 8 else 0.5))[claims.EIGHT]
     assert not outcomes(model(lambda n, ratio, how: 0.9 if ratio != 8 else 0.5))[claims.EIGHT]
 
 

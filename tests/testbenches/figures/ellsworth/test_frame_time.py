@@ -2,6 +2,8 @@
 
 import pytest
 
+from cardcage.testbenches.figures.ellsworth.dealing.model_dealing import ModelDealing
+from cardcage.testbenches.figures.ellsworth.dealing.models import FigureModel
 from cardcage.testbenches.figures.ellsworth.frame_time import (
     RATIOS,
     Costs,
@@ -10,8 +12,6 @@ from cardcage.testbenches.figures.ellsworth.frame_time import (
     mean_times,
     relative_times,
 )
-from cardcage.testbenches.figures.ellsworth.model_dealing import ModelDealing
-from cardcage.testbenches.figures.ellsworth.models import FigureModel
 
 PROCESSORS = (2, 4)
 

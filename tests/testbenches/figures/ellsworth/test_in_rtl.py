@@ -4,13 +4,13 @@ import pytest
 from golden_machine import GoldenMachine
 
 from cardcage.golden.specification.commands import ResponseKind
+from cardcage.testbenches.figures.ellsworth.dealing.models import FigureModel
 from cardcage.testbenches.figures.ellsworth.in_rtl import (
     POINT_FRAMES,
     PointJob,
     nearest_regions,
     point_jobs,
 )
-from cardcage.testbenches.figures.ellsworth.models import FigureModel
 
 SIZE = (48, 40)
 MODEL = FigureModel("pot", "teapot:tessellation=2", POINT_FRAMES, 30)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cardcage.testbenches.figures.ellsworth.screen_grids import (
+from cardcage.testbenches.figures.ellsworth.dealing.screen_grids import (
     PROCESSORS,
     RATIOS,
     cut,

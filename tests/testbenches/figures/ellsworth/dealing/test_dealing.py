@@ -11,16 +11,20 @@ from cardcage.golden.organisations.region_table import packed_table, static_tabl
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.scenes.camera import View
 from cardcage.golden.specification.errors import InputError
-from cardcage.testbenches.figures.ellsworth.cures import CURES
-from cardcage.testbenches.figures.ellsworth.dealing import (
+from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES
+from cardcage.testbenches.figures.ellsworth.dealing.dealing_job import (
     HOW,
     DealingJob,
     merge_lists,
     scattered_table,
 )
-from cardcage.testbenches.figures.ellsworth.model_dealing import dealing_jobs, model_dealing
-from cardcage.testbenches.figures.ellsworth.models import FigureModel, figure_models, triangles_of
-from cardcage.testbenches.figures.ellsworth.screen_grids import screen_grid
+from cardcage.testbenches.figures.ellsworth.dealing.model_dealing import dealing_jobs, model_dealing
+from cardcage.testbenches.figures.ellsworth.dealing.models import (
+    FigureModel,
+    figure_models,
+    triangles_of,
+)
+from cardcage.testbenches.figures.ellsworth.dealing.screen_grids import screen_grid
 
 SIZE = (96, 64)
 MODEL = FigureModel("pot", "teapot:tessellation=3", 3, 20)

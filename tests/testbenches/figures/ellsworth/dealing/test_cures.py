@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cardcage.testbenches.figures.ellsworth.cures import CURES, Seen
-from cardcage.testbenches.figures.ellsworth.frame_loads import BoxLoads
+from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES, Seen
+from cardcage.testbenches.figures.ellsworth.dealing.frame_loads import BoxLoads
 
 SHAPE = (3, 4)
 BY_NAME = {cure.name: cure for cure in CURES}

@@ -5,9 +5,9 @@ import pytest
 
 from cardcage.golden.balancing.region_counts import counts_of
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.testbenches.figures.ellsworth.frame_loads import FrameLoads
-from cardcage.testbenches.figures.ellsworth.models import mean_box, triangles_of
-from cardcage.testbenches.figures.ellsworth.screen_grids import cut, screen_grid
+from cardcage.testbenches.figures.ellsworth.dealing.frame_loads import FrameLoads
+from cardcage.testbenches.figures.ellsworth.dealing.models import mean_box, triangles_of
+from cardcage.testbenches.figures.ellsworth.dealing.screen_grids import cut, screen_grid
 
 SIZE = (75, 52)
 
