@@ -28,7 +28,8 @@ PAPERS = ("cox-hanrahan",)
               help="Simulate the cages of the last table, and the points measured in RTL: minutes "
               "the first time.  The rest are golden and cycle models, a minute.")
 @click.option("--cells", is_flag=True, help="Also place and route the boards of the last table, "
-              "some minutes each; without it earlier results are shown.")
+              "some minutes each, the direct merge more than a quarter of an hour; without it "
+              "earlier results are shown.")
 @click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: print one object.")
