@@ -24,6 +24,8 @@ from .scenes.mesh import Mesh
 from .scenes.mesh_display_list import DEFAULT_BACKGROUND, Color, display_list_of_mesh
 from .scenes.mesh_files.load_mesh import load_mesh
 from .scenes.quantise import PictureFormat
+from .scenes.scene_files.description import SceneDescription
+from .scenes.scene_files.parse import read_scene_file
 from .scenes.scene_files.scene_file import SceneFile
 from .specification.display_list import DisplayList
 from .specification.errors import InputError
@@ -70,6 +72,13 @@ def read_scene(scene: str | Path) -> LoadedScene:
     if isinstance(chosen, DescribedScene):
         return LoadedScene(chosen, None, SceneFile.read(chosen.path, TRIANGLE_LIMIT))
     return LoadedScene(chosen, mesh_of_scene(chosen))
+
+
+def description_of(scene: str | Path) -> SceneDescription | None:
+    """What a scene file says besides its picture; None for any other scene.  Raises
+    ``InputError``."""
+    chosen = parse_scene(scene)
+    return read_scene_file(chosen.path) if isinstance(chosen, DescribedScene) else None
 
 
 def make_display_list(

@@ -14,7 +14,8 @@ itself; the broadcast is for all of them, unless each has its share in a list.  
 pixels of their own draw a fragment a clock, and the ports are those of the busiest unit.
 Where it errs: how often a fragment is visible is the average for a random order of
 drawing; and many processing elements wait for each other's full queues, so that a
-fine mesh takes up to a fifth longer.  ``cycle_model`` follows all that.
+fine mesh takes up to a fifth longer; where regions are dealt out and neighbours in the
+list lie in the same ones, twice as long.  ``cycle_model`` follows all that.
 """
 
 from __future__ import annotations

@@ -189,7 +189,7 @@ def _check_node(cards: str, called: str) -> None:
         raise InputError(f"cards: {called} has no memory unit; add an M to the right of a P")
     if cards[0] == MEMORY_UNIT:
         left = len(cards) - len(cards.lstrip(MEMORY_UNIT))
-        raise InputError(f"cards: {called} has memory units ({left}) left of the first processing "
+        raise InputError(f"cards: {called} has {left} memory unit(s) left of the first processing "
                          "element, which belong to nobody; start with a P")
 
 

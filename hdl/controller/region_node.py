@@ -38,7 +38,7 @@ class RegionNode(OneNode):
         return {"regions": Out(RegionLines(self.configuration)), "shown_table": Out(1)}
 
     def add_to(self, m, controller):
-        m.submodules.table = table = self.table
+        m.submodules.region_table = table = self.table
         wiring.connect(m, table.lines, wiring.flipped(controller.regions))
         m.d.comb += [
             controller.shown_table.eq(table.shown),

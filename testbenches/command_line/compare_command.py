@@ -11,9 +11,9 @@ import click
 
 from ...golden.specification.card_order import MAXIMUM_NODES
 from ..comparison.compare_cages import (
-    DEFAULT_CARDS,
     DEFAULT_SIMULATE,
     compare_cages,
+    default_cards,
     expected_steps,
 )
 from ..comparison.comparison_facts import comparison_facts
@@ -77,7 +77,7 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
     Exit status: 0 every picture and every count as golden, 1 otherwise, or a cage delivers no
     picture, 2 the input or the system is at fault, or no cage can be built for the scene.
     """
-    which: dict[str, Any] = {"cards": cards or DEFAULT_CARDS, "retain": retain,
+    which: dict[str, Any] = {"cards": cards or default_cards(scene), "retain": retain,
                              "nodes": nodes or ()}
     with step_bar(expected_steps(**which)) as step:
         comparison = compare_cages(scene, step=step, command_line=command_line, **which, **options)

@@ -75,8 +75,9 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
 
     known = KNOWN[paper]
     # What was not asked for is the paper's own default.
-    asked = known.chosen(paper, {name: value for name, value in options.items()
-                                 if value not in (None, (), False) or name == "simulate"})
+    asked = known.chosen(paper, {
+        name: value for name, value in options.items()
+        if not (value is None or value == () or (name == "cells" and not value))})
     with atomic_folder(out, known.files) as folder:
         with step_bar(len(asked.jobs()) + 1) as step:
             found = known.redraw(asked, command_line, step)

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ...golden.scene_display_list import description_of
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, ENGINES
 from ..render import DEFAULT_SCENE, prepare_render
@@ -32,16 +33,17 @@ PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
 @sequence_options
 @click.option("--depth", type=click.Choice(["last", "all"]), default="last", show_default=True,
               help="With --frames or --path: whose depths are read back as well.")
-@click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),
-              show_default=True, metavar="DIR", help="Folder of the report.")
+@click.option("--out", type=click.Path(path_type=Path), metavar="DIR",
+              help="Folder of the report; where nothing is said cardcage-out, or what a scene file "
+              "says.")
 @click.pass_obj
-def render_command(command_line: str, /, scene: str, waveform: Path | None, out: Path,
-                   **options: Any) -> None:
+def render_command(command_line: str, /, scene: str, waveform: Path | None,
+                   out: Path | None, **options: Any) -> None:
     """Draw SCENE on a simulated machine and compare every pixel with the golden model.
 
-    SCENE is a mesh (.obj .stl .ply .glb .gltf), a saved display list (.npz), a hard case
-    (hard:NAME) or a built-in scene, with arguments if need be.  The report goes to DIR: open
-    report.html.
+    SCENE is a mesh (.obj .stl .ply .glb .gltf), a scene file (.scene), a saved display list
+    (.npz), a hard case (hard:NAME) or a built-in scene, with arguments if need be.  The report
+    goes to DIR: open report.html.
 
     \b
     Examples:
@@ -56,6 +58,8 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
       cardcage render cardcage-out/display_list.npz --cards 'PM PMMM'
     """
     asked = FramesOptions(**options)
+    if out is None:
+        out = _report_folder(scene)
     if asked.frames is not None or asked.path is not None:
         _render_frames(scene, asked, waveform, out, command_line)
         return
@@ -73,6 +77,11 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None, out:
     click.echo(render_summary(rendering))
     if not rendering.comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
+
+
+def _report_folder(scene: str) -> Path:
+    description = description_of(scene)
+    return Path((description and description.outfile) or "cardcage-out")
 
 
 def _render_frames(scene: str, options: FramesOptions, waveform: Path | None, out: Path,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...golden.scene_display_list import SceneDisplayList
+from ...golden.scene_display_list import SceneDisplayList, description_of
 from ...golden.specification.card_order import MAXIMUM_NODES, merge_card
 from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, make_engine
@@ -33,6 +33,16 @@ DEFAULT_SIMULATE = 4
 
 #: Told before each step what is begun.
 Step = Callable[[str], None]
+
+
+def default_cards(scene: str | Path) -> tuple[str, ...]:
+    """Three kinds of cages of as many elements, or nodes, as a scene file says; elements of one
+    node are the next power of two.  Raises ``InputError``."""
+    description = description_of(scene)
+    if description is None or description.nodes is None:
+        return DEFAULT_CARDS
+    nodes = description.nodes
+    return f"{1 << (nodes - 1).bit_length()}x(PMM)", f"{nodes}x(PMMC)", f"{nodes}x(PMMT)"
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ _COSTS: dict[str, Callable[[MergeCosts], str]] = {
     "LUTs of all cards": lambda cost: _placed(cost.cage_luts and f"{cost.cage_luts:,}"),
     "fragments a clock": lambda cost: f"{cost.fragments_per_clock:.3f}",
     "fragments a clock for 1,000 LUTs": lambda cost: _placed(
-        cost, cost.per_lut and f"{1000 * cost.per_lut:.4f}"),
+        cost.per_lut and f"{1000 * cost.per_lut:.4f}"),
 }
 
 

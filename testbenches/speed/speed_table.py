@@ -119,8 +119,8 @@ def _notes(rows: Sequence[BenchRow]) -> list[str]:
         said.append("Bound by the queue: with more triangles waiting (--fifo) it would be faster, "
                     "as the model says.")
     if any(row.region_utilisation is not None for row in rows):
-        said.append("Regions: how evenly they are dealt out: of what is counted, the mean "
-                    "element's as a part of the busiest one's.")
+        said.append("Regions: how evenly they are dealt out: the mean element's counts as a part "
+                    "of the busiest one's.")
     predicted = sum(row.prediction_seconds for row in rows)
     simulated = sum(row.measured.seconds for row in rows if row.measured is not None)
     said.append(f"The cycle model took {predicted:.2f} s" + (

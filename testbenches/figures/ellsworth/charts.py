@@ -12,13 +12,13 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, NullLocator, PercentFormatter, StrMethodFormatter
 
 from ...reports.page import chart_style, svg_element
-from .dealing import CLOCKS, LAST, SCATTERED, STATIC, THIS, TRIANGLES
+from .dealing.dealing_job import CLOCKS, LAST, SCATTERED, STATIC, THIS, TRIANGLES
+from .dealing.model_dealing import ModelDealing
+from .dealing.screen_grids import PROCESSORS, RATIOS
 from .frame_time import RATIOS as TIMED_RATIOS
 from .frame_time import relative_times
 from .in_rtl import MEASURED, Point
-from .model_dealing import ModelDealing
 from .overlap import SIDES, Overlap, by_regions
-from .screen_grids import PROCESSORS, RATIOS
 
 #: One of each ratio, from few regions to many.
 COLORS = dict(zip(RATIOS, ("#7a7a7a", "#b0643c", "#d98a2b", "#8aa02b", "#2a9d6f", "#3b82c4",

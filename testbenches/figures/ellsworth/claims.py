@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, product
 
 from ..verdict import Summary, Verdict, together
-from .dealing import LAST, STATIC, TRIANGLES
+from .dealing.dealing_job import LAST, STATIC, TRIANGLES
+from .dealing.model_dealing import ModelDealing
+from .dealing.screen_grids import RATIOS as ALL_RATIOS
 from .frame_time import (
     PAPERS,
     RATIOS,
@@ -15,9 +17,7 @@ from .frame_time import (
     best_where_sending_costs,
     mean_times,
 )
-from .model_dealing import ModelDealing
 from .overlap import SHAPE_SIDE, Overlap
-from .screen_grids import RATIOS as ALL_RATIOS
 
 #: Of utilisation, that count as none.
 NEAR = 0.01
@@ -102,9 +102,9 @@ def _of_figure_4(model: ModelDealing) -> Iterator[tuple[str, bool, str]]:
              for each, ratio in product(model.processors, ALL_RATIOS) if ratio > 1]
     worse = sum(static <= packed + NEAR for static, packed in pairs)
     yield UNBALANCED, worse == len(pairs), (
-        f"in {worse} of {len(pairs)} cases; at ratios above 1 they are used to "
-        f"{_mean([static for static, _ in pairs]):.2f} on average, and by the last frame's "
-        f"triangles to {_mean([packed for _, packed in pairs]):.2f}")
+        f"in {worse} of {len(pairs)} cases; at ratios above 1 utilisation is "
+        f"{_mean([static for static, _ in pairs]):.2f} on average, by the last frame's triangles "
+        f"{_mean([packed for _, packed in pairs]):.2f}")
     if str(OVERLAP_REGIONS) in model.found["visits"]:
         overlap = model.overlap(OVERLAP_REGIONS)
         yield OVERLAPS, OVERLAP[0] <= overlap <= OVERLAP[1], (
@@ -116,10 +116,11 @@ def _of_figure_5(model: ModelDealing) -> Iterator[tuple[str, bool, str]]:
     if model.model.best_ratio is not None:
         by_clocks = best_ratio(model, how=f"clocks, {LAST}")
         papers = times[RATIOS.index(model.model.best_ratio)]
+        longer = "" if papers == min(times) else (
+            f", and {model.model.best_ratio} takes {_more(papers, min(times))} longer")
         yield BEST, papers <= (1 + AS_GOOD) * min(times), (
-            f"{best} is best, by our costs, and {model.model.best_ratio} takes "
-            f"{_more(papers, min(times))} longer; with tables by the last frame's clocks "
-            f"{by_clocks} is best")
+            f"{best} is best by our costs{longer}; with tables by the last frame's clocks "
+            f"{by_clocks} is")
     ratios = [best_where_sending_costs(model, factor) for factor in SENDING]
     yield SENDS, ratios[-1] < ratios[0] and all(a >= b for a, b in pairwise(ratios)), (
         "best " + ", ".join(f"{ratio} where sending costs {factor:g} times as much"
@@ -138,7 +139,7 @@ def _steps(steps: Sequence[float], word: str) -> str:
 
 
 def _more(time: float, least: float) -> str:
-    return f"{100 * (time / least - 1):.1f} %"
+    return f"{100 * (time / least - 1):.2f} %"
 
 
 def _mean(values: Sequence[float]) -> float:

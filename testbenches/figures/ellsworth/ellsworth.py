@@ -12,12 +12,12 @@ from typing import Any
 from ....golden.specification.errors import InputError
 from ...engines.choose_engine import AUTO, make_engine
 from ...support.processes import cores, in_processes
-from .dealing import DealingJob
+from .dealing.dealing_job import DealingJob
+from .dealing.model_dealing import ModelDealing, dealing_jobs, model_dealing
+from .dealing.models import FigureModel, Size, figure_models
+from .dealing.screen_grids import LEAST_SIDE, processors_for
 from .in_rtl import Point, PointJob, point_jobs
-from .model_dealing import ModelDealing, dealing_jobs, model_dealing
-from .models import FigureModel, Size, figure_models
 from .overlap import Overlap, OverlapJob, overlap_jobs
-from .screen_grids import LEAST_SIDE, processors_for
 
 #: The paper's screen.
 DEFAULT_SIZE = (640, 512)
@@ -48,10 +48,10 @@ class EllsworthOptions:
         """Raises ``InputError``."""
         if self.frames is not None and not 1 <= self.frames <= MOST_FRAMES:
             raise InputError(f"--frames: must be 1 to {MOST_FRAMES:,}, not {self.frames}")
-        if not processors_for(self.size):
+        if len(processors_for(self.size)) < 2:
             width, height = self.size
             raise InputError(f"--size: {width}x{height} is too small for regions of "
-                             f"{LEAST_SIDE}x{LEAST_SIDE} pixels; take 64x48 at least")
+                             f"{LEAST_SIDE}x{LEAST_SIDE} pixels; take 32x32 at least")
         if not self.models:
             return figure_models(self.frames, TURN)
         if len(set(self.models)) < len(self.models):

@@ -6,8 +6,10 @@ from dataclasses import asdict
 from typing import Any
 
 from .claims import claims_of, claims_of_overlap, summary
-from .cures import CURES
-from .dealing import HOW
+from .dealing.cures import CURES
+from .dealing.dealing_job import HOW
+from .dealing.model_dealing import ModelDealing
+from .dealing.screen_grids import RATIOS
 from .ellsworth import Ellsworth
 from .findings import best_cure, cure_gain, findings
 from .frame_time import (
@@ -19,8 +21,6 @@ from .frame_time import (
     relative_times,
 )
 from .frame_time import RATIOS as TIMED_RATIOS
-from .model_dealing import ModelDealing
-from .screen_grids import RATIOS
 
 #: What ``cardcage figures`` calls the paper.
 PAPER = "ellsworth"

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 from ...support.text_table import TextTable
 from .claims import summary
-from .cures import CURES
-from .dealing import CEILING, CLOCKS, CURE_RATIO, HOW, SCATTERED, STATIC, THIS
+from .dealing.cures import CURES
+from .dealing.dealing_job import CEILING, CLOCKS, CURE_RATIO, HOW, SCATTERED, STATIC, THIS
+from .dealing.model_dealing import ModelDealing
 from .ellsworth import Ellsworth
 from .findings import findings
 from .frame_time import COSTS, RATIOS, SENDING, best_ratio, best_where_sending_costs, mean_times
 from .in_rtl import Point
-from .model_dealing import ModelDealing
 from .overlap import REGIONS, SHAPE_SIDE, by_regions, by_shape
 
 #: Stands for a figure that there is none of.

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from statistics import mean
 
-from .cures import COUNTERS, CURES, LAST, Cure
-from .dealing import CEILING, CLOCKS, CURE_RATIO, THIS, TRIANGLES
-from .dealing import LAST as LAST_FRAME
-from .model_dealing import ModelDealing
+from .dealing.cures import COUNTERS, CURES, LAST, Cure
+from .dealing.dealing_job import CEILING, CLOCKS, CURE_RATIO, THIS, TRIANGLES
+from .dealing.dealing_job import LAST as LAST_FRAME
+from .dealing.model_dealing import ModelDealing
 
 #: Utilisation above this is no loss that a table could avoid.
 _WHOLE = 0.995

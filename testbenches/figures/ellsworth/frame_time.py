@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from statistics import mean
 
-from .dealing import LAST, TRIANGLES
-from .model_dealing import ModelDealing
+from .dealing.dealing_job import LAST, TRIANGLES
+from .dealing.model_dealing import ModelDealing
 
 #: Ratios of figure 5.
 RATIOS = (2, 3, 4, 6, 8, 12)

@@ -12,8 +12,8 @@ from ....golden.planning.machine_plan import plan
 from ....golden.specification.regions import MAXIMUM_REGIONS
 from ...sequence.sequence_run import SequenceFrame, simulate_sequence
 from ...support.measurement_cache import measured_once, package_hash
-from .dealing import CLOCKS, CURE_RATIO, LAST, STATIC
-from .models import FigureModel, Size
+from .dealing.dealing_job import CLOCKS, CURE_RATIO, LAST, STATIC
+from .dealing.models import FigureModel, Size
 
 #: Of the machines: each has one processing element of one memory unit for each of these.
 POINT_PROCESSORS = (2, 4, 8, 16)

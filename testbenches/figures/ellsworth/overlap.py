@@ -11,9 +11,9 @@ import numpy as np
 from ....golden.balancing.region_grid import RegionGrid
 from ....golden.scene_display_list import make_display_list
 from ...support.measurement_cache import measured_once, package_hash
-from .frame_loads import FrameLoads
-from .models import Size, mean_box, triangles_of
-from .screen_grids import cut, fits, screen_grid
+from .dealing.frame_loads import FrameLoads
+from .dealing.models import Size, mean_box, triangles_of
+from .dealing.screen_grids import cut, fits, screen_grid
 
 #: Random triangles: so many of each size, with their corners anywhere in a square of such a side.
 COUNT = 20_000

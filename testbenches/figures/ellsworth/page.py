@@ -10,7 +10,7 @@ from ...reports.page import page_environment
 from ...support.any_characters import readable
 from .charts import figure_4, figure_5, overlap_chart, save_figure_4
 from .claims import claims_of, claims_of_overlap, summary
-from .cures import GOES_ON
+from .dealing.cures import GOES_ON
 from .ellsworth import Ellsworth
 from .facts import PAPER, ellsworth_facts
 from .figure_tables import (

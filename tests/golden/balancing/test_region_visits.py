@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 import pytest
-from region_lists import listed, random_list
+from region_bench.lists import listed, random_list
 
 from cardcage.golden.balancing.region_counts import counts_of, region_counts, utilisation
 from cardcage.golden.balancing.region_grid import RegionGrid

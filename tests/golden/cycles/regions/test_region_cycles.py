@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from region_lists import listed, random_list, random_table
+from region_bench.lists import listed, random_list, random_table
 
 from cardcage.golden.balancing.region_counts import loads, region_counts
 from cardcage.golden.balancing.region_grid import RegionGrid

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....golden.reference.coverage import Triangles
-from ....golden.scene_display_list import LoadedScene, make_display_list, read_scene
-from ....golden.scenes.camera import View, framing_camera, seen_direction, transform
-from ....golden.scenes.mesh import Mesh
-from ....golden.scenes.mesh_display_list import display_list_of_corners
-from ....golden.scenes.quantise import PictureFormat
-from ....golden.specification.display_list import DisplayList
-from ....golden.specification.errors import InputError
-from ....golden.specification.sampling_grid import Grid
+from .....golden.reference.coverage import Triangles
+from .....golden.scene_display_list import LoadedScene, make_display_list, read_scene
+from .....golden.scenes.camera import View, framing_camera, seen_direction, transform
+from .....golden.scenes.mesh import Mesh
+from .....golden.scenes.mesh_display_list import display_list_of_corners
+from .....golden.scenes.quantise import PictureFormat
+from .....golden.specification.display_list import DisplayList
+from .....golden.specification.errors import InputError
+from .....golden.specification.sampling_grid import Grid
 
 Size = tuple[int, int]
 

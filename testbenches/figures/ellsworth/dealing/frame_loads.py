@@ -8,10 +8,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ....golden.balancing.region_counts import RegionCounts, counts_of
-from ....golden.balancing.region_grid import RegionGrid
-from ....golden.balancing.region_visits import region_visits
-from ....golden.reference.coverage import Triangles
+from .....golden.balancing.region_counts import RegionCounts, counts_of
+from .....golden.balancing.region_grid import RegionGrid
+from .....golden.balancing.region_visits import region_visits
+from .....golden.reference.coverage import Triangles
 
 Int64 = NDArray[np.int64]
 

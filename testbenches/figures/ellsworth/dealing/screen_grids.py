@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ....golden.balancing.region_grid import RegionGrid
+from .....golden.balancing.region_grid import RegionGrid
 from .models import Size
 
 #: Along figure 4, and its curves: regions a processor.

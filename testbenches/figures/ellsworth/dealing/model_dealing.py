@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import mean
 from typing import Any
 
-from .dealing import LAST, THIS, DealingJob, merge_lists
+from .dealing_job import LAST, THIS, DealingJob, merge_lists
 from .models import FigureModel, Size
 
 #: Frames of a job: a few are looked at twice, by the job of the frames after them.

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....golden.balancing.region_counts import RegionCounts, utilisation
-from ....golden.balancing.region_grid import RegionGrid
-from ....golden.organisations.region_table import packed_table, static_table
-from ....golden.specification.regions import default_slots
-from ...support.measurement_cache import measured_once, package_hash
+from .....golden.balancing.region_counts import RegionCounts, utilisation
+from .....golden.balancing.region_grid import RegionGrid
+from .....golden.organisations.region_table import packed_table, static_table
+from .....golden.specification.regions import default_slots
+from ....support.measurement_cache import measured_once, package_hash
 from .cures import CURES, Seen
 from .frame_loads import BoxLoads, FrameLoads
 from .models import FigureModel, Size, mean_box, triangles_of

@@ -1,0 +1,1 @@
+"""How evenly regions are dealt out, frame by frame of a model that turns."""

@@ -1,0 +1,1 @@
+"""What tests of machines that deal regions out share."""
