@@ -97,13 +97,17 @@ def test_pictures_of_a_machine():
 
 
 def test_cages_side_by_side():
+    """What is asked of all is asked of those that can be."""
     result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",
-                 "--engine", "pysim", "--json")
+                 "--cards", "2x(PMC)", "--immediate", "--packet", "contiguous", "--balance",
+                 "triangles", "--engine", "pysim", "--json")
     assert result.exit_code == 0, result.output
     facts = json.loads(result.stdout)
-    assert facts["identical"] and facts["pictures"] == [["PM", "3x(PM)/4x2"]]
-    alone, dealt = facts["cages"]
+    assert facts["identical"] and facts["pictures"] == [["PM", "3x(PM)/4x2", "2x(PMC)"]]
+    alone, dealt, chained = facts["cages"]
     assert alone["regions"] is None and dealt["regions"]["equal"]
+    assert dealt["machine"]["balance"] == "triangles"
+    assert chained["machine"]["packet"] == "contiguous"
     assert dealt["machine"]["regions"] == [4, 2] and dealt["cycles"]["draw"] > 0
 
 
