@@ -55,20 +55,12 @@ def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]
     def title(row: BenchRow) -> str:
         return f"{row.machine.label}; {TITLES[row.order]}"
 
-    tables: list[tuple[str, list[tuple[str, ...]]]] = []
+    tables = []
     for name, group in groupby(rows, title):
         some = list(group)
         tables.append((name, [_header(some[0]), *map(_cells, some)]))
         observed = [(row.case, row.measured.activity.shares()) for row in some
                     if row.measured is not None and row.measured.activity is not None]
-        dealt = [(row.case, row.measured.regions) for row in some
-                 if row.measured is not None and row.measured.regions is not None]
-        if dealt:
-            tables.append(("  how evenly the regions are dealt out, as they are counted", [
-                ("case", "utilisation", "busiest element", "of"),
-                *((case, f"{100 * regions.utilisation:.1f} %", str(regions.busiest),
-                   f"{int(regions.loads.max()):,} {regions.counted}")
-                  for case, regions in dealt)]))
         if observed:
             header = ("case", *(kind.name.replace("_", " ") for kind in ACTIVITY_KINDS))
             tables.append(("  where the processing elements' clocks went, in %", [

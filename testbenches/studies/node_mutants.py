@@ -94,8 +94,8 @@ THOUGHTS = (
     Thought("sync on the pins as it leaves the generator", _GENERATOR,
             "(getattr(pins, name).eq(last[name])", "(getattr(pins, name).eq(first[name])",
             "tests/hdl/video/test_chained_scan.py"),
-    Thought("sync a clock late", _GENERATOR, "delayed(m, signal, self.bus_latency, name",
-            "delayed(m, signal, self.bus_latency + ('sync' in name), name",
+    Thought("sync a clock late", _GENERATOR, "looking_up + self.bus_latency, name",
+            "looking_up + self.bus_latency + ('sync' in name), name",
             "tests/hdl/video/test_video_scan_generator.py"),
     Thought("what was sent is counted a clock later", _CHAIN, "self._count(m, arriving.pixel)",
             "self._count(m, leaving.pixel)", "tests/machine/nodes/test_faults_of_nodes.py"
