@@ -34,10 +34,9 @@ class ShareFilter:
     This is no component, but adds its signals to the module of the ``BroadcastQueue`` that
     uses it: that costs no hierarchy and no cell, so a machine without further filters
     stays as it is.  What has to be known for the decision are ``members``, which become
-    members of the queue and are connected by the processing element.  So a later filter
-    (triangles of other nodes, regions looked up in a table) adds its inputs to
-    ``members``, its registers to ``add_to``, and one more condition to ``keep``; the queue
-    is not touched.
+    members of the queue and are connected by the processing element.  So another filter
+    brings its inputs as ``members``, its registers in ``add_to``, and what it has found out as
+    ``known``, as the ``RegionFilter`` does; the queue is not touched.
 
     Latency: ``latency`` clock, for which the queue holds the triangle in a register.
     Throughput: a triangle a clock.

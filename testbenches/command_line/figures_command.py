@@ -32,7 +32,8 @@ PAPERS = ("cox-hanrahan", "ellsworth")
               help="Simulate the machines whose points are marked, and the cages of a table: "
               "minutes the first time.  The rest are golden and cycle models.")
 @click.option("--cells", is_flag=True, help="cox-hanrahan: also place and route the boards of the "
-              "last table, some minutes each; without it earlier results are shown.")
+              "last table, some minutes each, the direct merge more than a quarter of an hour; "
+              "without it earlier results are shown.")
 @click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: print one object.")

@@ -73,13 +73,19 @@ class CompareOptions:
     turn: float | None = None
     path: Path | None = None
 
+    @property
+    def seen(self) -> MachineOptions:
+        """What is asked of the scene: nothing that only some kinds of cages can be asked."""
+        return replace(self.machine, packet=None, queue=None, slots=None, balance=None,
+                       balancer=None)
+
     def views(self, scene: str | Path) -> SceneFrames | None:
         """The scene from all sides, if any were asked for.  Raises ``InputError``."""
         if self.frames is None and self.path is None:
             if self.turn is not None:
                 raise InputError("--turn: is for several views; give --frames as well")
             return None
-        return SceneFrames(scene, self.machine, frames=self.frames, turn=self.turn, path=self.path)
+        return SceneFrames(scene, self.seen, frames=self.frames, turn=self.turn, path=self.path)
 
     def __post_init__(self) -> None:
         for nodes in self.nodes:
@@ -228,7 +234,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     began = time.perf_counter()
     make_engine(options.engine)  # one that cannot run is no fault of a cage's
     views = options.views(scene)
-    loaded = load_scene(scene, options.machine) if views is None else views.first
+    loaded = load_scene(scene, options.seen) if views is None else views.first
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
     known = {(cage.spelled, cage.retained, cage.regions) for cage in cages}

@@ -10,6 +10,7 @@ A program of its own: ``deep_stack.py PACKAGE FUNCTION ARGUMENT ...``, with the 
 import importlib
 import sys
 import threading
+from typing import Any
 
 #: Bytes; only what is used of them is taken.
 STACK = 256 << 20
@@ -20,13 +21,13 @@ THREAD = STACK + (16 << 20)
 def deepen() -> None:
     """All machines of ``wasmtime`` made from now on have ``STACK``; where its version does not
     know how, they are as they were."""
-    wasmtime = importlib.import_module("wasmtime")
+    wasmtime: Any = importlib.import_module("wasmtime")
     # The one limit may not be above the other, which only the bindings of wasmtime can change.
     bindings = importlib.import_module("wasmtime._bindings")
     allow = getattr(bindings, "wasmtime_config_async_stack_size_set", None)
     plain = wasmtime.Config
 
-    def deeper() -> object:
+    def deeper() -> Any:
         config = plain()
         if allow is not None:
             allow(config.ptr(), STACK)

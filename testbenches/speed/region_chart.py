@@ -74,7 +74,9 @@ def _alike(machine: BenchMachine) -> tuple[int, int, int, str, int]:
 
 
 def _case(row: BenchRow) -> str:
-    """Only a mesh has an order that can be shuffled; the peers' triangles lie anywhere."""
+    """Only a mesh has an order that can be shuffled; the peers' triangles lie anywhere, and their
+    depths matter to one-port units alone."""
     if row.case.split()[0] == MESH:
         return f"{row.case}, shuffled" if row.order == "random" else f"{row.case}, in list order"
-    return f"{row.case}, random depths" if row.order == "random" else row.case
+    hidden = row.order == "random" and row.machine.ports == 1
+    return f"{row.case}, random depths" if hidden else row.case

@@ -12,6 +12,12 @@ from cardcage.testbenches.machine_options import MachineOptions, option_words
 SCENE = "random:n=12,size=8,seed=5"
 
 
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """An empty folder to work in."""
+    monkeypatch.chdir(tmp_path)
+
+
 def run(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
@@ -80,8 +86,7 @@ def test_the_options_in_words():
                                      "--balancer", "hardware"]
 
 
-def test_pictures_of_a_machine(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_pictures_of_a_machine():
     result = run("render", SCENE, "--size", "8x8", "--cards", "3x(PM)", "--regions", "4x2",
                  "--frames", 2, "--balancer", "hardware", "--engine", "pysim")
     assert result.exit_code == 0, result.output
@@ -91,15 +96,18 @@ def test_pictures_of_a_machine(tmp_path, monkeypatch):
     assert result.stderr == ""
 
 
-def test_cages_side_by_side(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_cages_side_by_side():
+    """What is asked of all is asked of those that can be."""
     result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",
-                 "--engine", "pysim", "--json")
+                 "--cards", "2x(PMC)", "--immediate", "--packet", "contiguous", "--balance",
+                 "triangles", "--engine", "pysim", "--json")
     assert result.exit_code == 0, result.output
     facts = json.loads(result.stdout)
-    assert facts["identical"] and facts["pictures"] == [["PM", "3x(PM)/4x2"]]
-    alone, dealt = facts["cages"]
+    assert facts["identical"] and facts["pictures"] == [["PM", "3x(PM)/4x2", "2x(PMC)"]]
+    alone, dealt, chained = facts["cages"]
     assert alone["regions"] is None and dealt["regions"]["equal"]
+    assert dealt["machine"]["balance"] == "triangles"
+    assert chained["machine"]["packet"] == "contiguous"
     assert dealt["machine"]["regions"] == [4, 2] and dealt["cycles"]["draw"] > 0
 
 
