@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -76,9 +77,10 @@ def _utilisation_panels(panels: Sequence[Axes], model: ModelDealing, points: Seq
 
 def _legend(figure: Figure, measured: bool) -> None:
     lines = [Line2D([], [], color=color, label=f"{ratio}") for ratio, color in COLORS.items()]
+    styles: dict[str, Literal["--", "-", ":", "-."]] = {
+        "this frame's counts": "--", "the last frame's": "-", "static": ":", "scattered": "-."}
     lines += [Line2D([], [], color="#888888", linestyle=style, label=label)
-              for style, label in (("--", "this frame's counts"), ("-", "the last frame's"),
-                                   (":", "static"), ("-.", "scattered"))]
+              for label, style in styles.items()]
     if measured:
         lines.append(Line2D([], [], color=POINT_COLOR, marker="s", markerfacecolor="none",
                             linestyle="none", label="in RTL"))

@@ -14,6 +14,10 @@ from .models import FigureModel, Size
 PORTION = 12
 
 
+def _mean(numbers: Sequence[float]) -> float:
+    return mean(numbers)
+
+
 @dataclass(frozen=True, eq=False)
 class ModelDealing:
     """``found``: as ``DealingJob`` has it, of all frames."""
@@ -29,16 +33,16 @@ class ModelDealing:
     @property
     def given(self) -> float:
         """Triangles of a frame that face the eye."""
-        return mean(self.found["given"])
+        return _mean(self.found["given"])
 
     @property
     def drawn(self) -> float:
         """Triangles of a frame that may cover a pixel."""
-        return mean(self.found["drawn"])
+        return _mean(self.found["drawn"])
 
     @property
     def fragments(self) -> float:
-        return mean(self.found["fragments"])
+        return _mean(self.found["fragments"])
 
     @property
     def mean_size(self) -> float:
@@ -48,20 +52,20 @@ class ModelDealing:
     @property
     def box(self) -> tuple[float, float]:
         """Width and height of a triangle's, in pixels."""
-        return mean(self.found["width"]), mean(self.found["height"])
+        return _mean(self.found["width"]), _mean(self.found["height"])
 
     def visits(self, regions: int) -> float:
-        return mean(self.found["visits"][str(regions)])
+        return _mean(self.found["visits"][str(regions)])
 
     def clocks(self, regions: int) -> float:
         """Of all regions together."""
-        return mean(self.found["clocks"][str(regions)])
+        return _mean(self.found["clocks"][str(regions)])
 
     def overlap(self, regions: int) -> float:
         return self.visits(regions) / max(self.drawn, 1)
 
     def utilisation(self, processors: int, ratio: int, how: str) -> float:
-        return mean(self.found["utilisation"][str(processors)][str(ratio)][how])
+        return _mean(self.found["utilisation"][str(processors)][str(ratio)][how])
 
     def curve(self, ratio: int, how: str) -> list[float]:
         return [self.utilisation(each, ratio, how) for each in self.processors]
@@ -76,7 +80,7 @@ class ModelDealing:
         return [int(each) for each in self.found["cures"]]
 
     def cured(self, name: str, processors: int) -> float:
-        return mean(self.found["cures"][str(processors)][name])
+        return _mean(self.found["cures"][str(processors)][name])
 
 
 def dealing_jobs(model: FigureModel, size: Size) -> list[DealingJob]:
