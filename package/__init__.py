@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _HOMES
+    from .golden.balancing.learnt_counts import learnt_counts
     from .golden.organisations.region_table import packed_table
     from .golden.planning.machine_plan import plan
     from .golden.scene_display_list import make_display_list
@@ -46,6 +47,7 @@ __all__ = [
     "compare",
     "compare_cages",
     "export",
+    "learnt_counts",
     "make_display_list",
     "packed_table",
     "plan",
@@ -65,6 +67,7 @@ _HOMES = {
     "compare": "testbenches.frames.compare",
     "compare_cages": "testbenches.comparison.compare_cages",
     "export": "testbenches.export.export_files",
+    "learnt_counts": "golden.balancing.learnt_counts",
     "make_display_list": "golden.scene_display_list",
     "packed_table": "golden.organisations.region_table",
     "plan": "golden.planning.machine_plan",

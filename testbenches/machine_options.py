@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
+from ..golden.balancing.table_policy import Policy, counted_by, default_policy
 from ..golden.organisations.organisation_of import organisation_of
 from ..golden.planning.machine_plan import plan
 from ..golden.planning.presets import PRESETS
@@ -22,7 +23,7 @@ from ..golden.specification.configuration import (
 )
 from ..golden.specification.errors import InputError
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
-from ..golden.specification.regions import Balance, Balancer
+from ..golden.specification.regions import Balancer
 
 #: Small enough for every engine; the size is the scenes' own default.
 DEFAULT_MACHINE: dict[str, Any] = {"cards": "2x(PMM)", "clocks_per_pixel": 2}
@@ -69,8 +70,9 @@ class MachineOptions:
     ``regions``           columns and rows of the regions of the screen that are dealt out to
                           processing elements; None interlaces pixels
     ``slots``             regions that each of them has room for
-    ``balance``           what is counted of a region, by which the next table is made:
-                          ``static`` nothing, ``triangles`` or ``clocks``
+    ``balance``           by which the next table is made: ``static`` nothing, ``triangles`` or
+                          ``clocks`` of each region in the last picture, which is what the machine
+                          counts; ``learnt``, clocks that the host foretells from the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
 
     How a mesh is looked at; a display list can be asked for none of it:
@@ -100,7 +102,7 @@ class MachineOptions:
     list_words: int | None = None
     regions: tuple[int, int] | None = None
     slots: int | None = None
-    balance: Balance | None = None
+    balance: Policy | None = None
     balancer: Balancer | None = None
     view: tuple[float, float] | None = None
     zoom: float | None = None
@@ -125,6 +127,8 @@ class MachineOptions:
             settled["fraction_bits"] = None  # in place of the preset's
         self._check_merging(settled["cards"])
         self._check_regions()
+        if self.balance is not None:
+            settled["balance"] = counted_by(self.balance)
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
         if self.setup is not None:
@@ -154,6 +158,16 @@ class MachineOptions:
             if self.regions is None and getattr(self, name) is not None:
                 raise InputError(f"--{name}: is for regions that are dealt out; give --regions as "
                                  "well, as in --regions 8x8")
+        if self.balance not in (None, *get_args(Policy)):
+            raise InputError(f"balance: {self.balance!r} is none of {', '.join(get_args(Policy))}")
+        if (self.balance, self.balancer) == ("learnt", "hardware"):
+            raise InputError("--balance: learnt is for a host; the hardware packs the last "
+                             "picture's counts as they are: take --balance clocks, or --balancer "
+                             "host")
+
+    def policy(self, configuration: MachineConfiguration) -> Policy:
+        """Of what the tables for that machine are made, which is as these options ask."""
+        return self.balance or default_policy(configuration)
 
     def for_plan(self) -> dict[str, Any]:
         """What is asked of ``plan`` besides a display list, which has its own size.

@@ -113,7 +113,8 @@ class RenderJob:
         if traffic is not None:  # no fault of the picture
             nodes = node_figures(configuration, display_list, simulation, traffic)
             warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
-        regions = region_figures(configuration, display_list, simulation)
+        regions = region_figures(configuration, display_list, simulation,
+                                 policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
         return Rendering(

@@ -98,7 +98,8 @@ class FramesJob:
             self.configuration, self.lists, self.options.engine,
             triangles=self.lists.most_triangles, depths=self.options.depth,
             # A bus merges one picture while the next one is drawn, unless asked in between.
-            counters="last" if self.configuration.snoops else "all", progress=progress,
+            counters="last" if self.configuration.snoops else "all",
+            policy=self.options.policy(self.configuration), progress=progress,
             memory_seed=self.options.random_memory))
         shown = next((frame for frame in frames if not frame.equal), frames[-1])
         scene = self.lists.scene(shown.number)

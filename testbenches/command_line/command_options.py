@@ -10,6 +10,7 @@ from typing import Any, get_args
 
 import click
 
+from ...golden.balancing.table_policy import Policy
 from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import (
@@ -21,7 +22,7 @@ from ...golden.specification.configuration import (
 )
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE
-from ...golden.specification.regions import MAXIMUM_REGIONS, Balance, Balancer
+from ...golden.specification.regions import MAXIMUM_REGIONS, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
 
@@ -231,10 +232,11 @@ _DEALING_OPTIONS = (
     click.option("--slots", type=click.IntRange(1, MAXIMUM_REGIONS), metavar="N",
                  help="With regions: how many each processing element has room for.  [default: a "
                  "quarter more than an even share]"),
-    click.option("--balance", type=click.Choice(get_args(Balance)),
+    click.option("--balance", type=click.Choice(get_args(Policy)),
                  help="With regions: what is counted of each in a picture, by which they are dealt "
-                 "out for the next one: triangles, or the clocks these take it; static counts "
-                 "nothing, and they stay.  [default: clocks]"),
+                 "out for the next one: triangles, or the clocks these take it; learnt are clocks, "
+                 "too, which the host foretells from the last three pictures; static counts "
+                 "nothing, and they stay.  [default: learnt; clocks with --balancer hardware]"),
     click.option("--balancer", type=click.Choice(get_args(Balancer)),
                  help="With regions: who deals them out, the host, or the machine itself.  "
                  "[default: host]"),

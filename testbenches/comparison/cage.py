@@ -167,14 +167,17 @@ class CageJob:
     def _run(self) -> CageRun:
         display_list = self.scene.display_list
         lists = display_list if self.views is None else self.views
-        configuration = plan(lists, **self.cage.options(self.options).for_plan()).configuration
-        frames = FrameSequence(configuration, display_list, self.engine, self.random_memory)
+        options = self.cage.options(self.options)
+        configuration = plan(lists, **options.for_plan()).configuration
+        policy = options.policy(configuration)
+        frames = FrameSequence(configuration, display_list, self.engine, self.random_memory,
+                               policy)
         simulation = frames.simulation
         comparison = compare(configuration, display_list, simulation)
         golden = merge_cage(configuration, display_list)[1]
         nodes = node_figures(configuration, display_list, simulation, golden)
         views = [] if self.views is None else draw_views(configuration, self.views, self.engine,
-                                                         self.random_memory)
+                                                         self.random_memory, policy)
         return CageRun(
             self.cage, configuration, simulation, comparison, frames.clocks,
             frames.latency(comparison.golden), nodes,

@@ -17,6 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...golden.balancing.table_policy import Policy
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
@@ -87,14 +88,15 @@ class FrameSequence:
     """
 
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
-                 engine: str, memory_seed: int | None = None) -> None:
+                 engine: str, memory_seed: int | None = None,
+                 policy: Policy | None = None) -> None:
         self._configuration = configuration
         self._display_list = display_list
         whole = frame_commands(configuration, display_list)
         self._opcodes = [opcode_of(word) for word in whole]
         self._start = self._opcodes.index(Opcode.FRAME_START)
         tables = (None if configuration.regions is None
-                  else RegionTables(configuration, [display_list] * FRAMES))
+                  else RegionTables(configuration, [display_list] * FRAMES, policy=policy))
         sent = None if tables is None else tables.sent(1)
         dealing = [] if sent is None else table_commands(configuration, sent)
         self._dealing = len(dealing)

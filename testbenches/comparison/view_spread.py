@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ...golden.balancing.table_policy import Policy
 from ...golden.merging.cage import merge_cage
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
@@ -44,10 +45,11 @@ class Spread:
 
 
 def draw_views(configuration: MachineConfiguration, lists: SceneFrames, engine: str,
-               memory_seed: int | None) -> list[ViewFigures]:
+               memory_seed: int | None, policy: Policy | None = None) -> list[ViewFigures]:
     """Every view on one machine, which is booted once; raises what ``simulate_sequence`` does."""
     return [_figures(configuration, lists[frame.number], frame) for frame in simulate_sequence(
-        configuration, lists, engine, triangles=lists.most_triangles, memory_seed=memory_seed)]
+        configuration, lists, engine, triangles=lists.most_triangles, memory_seed=memory_seed,
+        policy=policy)]
 
 
 def _figures(configuration: MachineConfiguration, display_list: DisplayList,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...golden.balancing.region_counts import loads, region_counts, utilisation
 from ...golden.balancing.region_grid import RegionGrid
+from ...golden.balancing.table_policy import Policy
 from ...golden.planning.scene_needs import fitted
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
@@ -33,15 +34,17 @@ def golden_counts(configuration: MachineConfiguration, display_list: DisplayList
 
 class RegionTables:
     """The tables of pictures that are drawn one after another: the first one is that with which
-    every machine begins, each other one is packed of the golden counts of the picture before.
+    every machine begins, each other one is made of the golden counts of the pictures before.
 
-    Each is made when it is asked for; ``lists`` are the pictures' display lists.
+    Each is made when it is asked for; ``lists`` are the pictures' display lists, ``policy`` is as
+    ``RegionHost`` has it.
     """
 
-    def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList]) -> None:
+    def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList], *,
+                 policy: Policy | None = None) -> None:
         self._configuration = configuration
         self._lists = lists
-        self._host = RegionHost(configuration)
+        self._host = RegionHost(configuration, policy=policy)
         self._tables = [self._host.table]
         self._counts: dict[int, Int64] = {}
 
@@ -54,7 +57,7 @@ class RegionTables:
     def table(self, number: int) -> Int64:
         """int64 (regions,): by which that picture is drawn, or would be after the last one."""
         while len(self._tables) <= number:
-            if self._configuration.balance != "static":
+            if self._host.policy != "static":
                 self._host.pack(self.counts(len(self._tables) - 1))
             self._tables.append(self._host.table)
         return self._tables[number]
@@ -71,22 +74,24 @@ class RegionTables:
     def figures(self, number: int, simulation: Simulation) -> RegionFigures:
         """Of a picture as it left the machine."""
         return RegionFigures(
-            self._configuration, self.table(number), self.counts(number), self.table(number + 1),
-            simulation.slot_counts, simulation.next_table)
+            self._configuration, self._host.policy, self.table(number), self.counts(number),
+            self.table(number + 1), simulation.slot_counts, simulation.next_table)
 
 
 @dataclass(frozen=True, eq=False)
 class RegionFigures:
     """What the regions of a picture cost, and who drew them.
 
+    ``policy``      of what tables are made
     ``table``       int64 (regions,): by which the picture was drawn
     ``counts``      int64 (regions,): what is counted of each, by the golden model
-    ``next_table``  int64 (regions,): packed of these
+    ``next_table``  int64 (regions,): made of these, and of earlier ones
     ``slot_counts`` int64 (elements, slots): in the machine's own count; None where it was not read
     ``read_table``  int64 (regions,): the next table that the machine made; None likewise
     """
 
     configuration: MachineConfiguration
+    policy: Policy
     table: Int64
     counts: Int64
     next_table: Int64
@@ -131,8 +136,9 @@ class RegionFigures:
 
 
 def region_figures(configuration: MachineConfiguration, display_list: DisplayList,
-                   simulation: Simulation) -> RegionFigures | None:
+                   simulation: Simulation, *,
+                   policy: Policy | None = None) -> RegionFigures | None:
     """Of the first picture after the boot; None where there are no regions."""
     if configuration.regions is None:
         return None
-    return RegionTables(configuration, [display_list]).figures(0, simulation)
+    return RegionTables(configuration, [display_list], policy=policy).figures(0, simulation)

@@ -1,4 +1,4 @@
-"""What a host does where regions of the screen are dealt out: it sends tables, and packs the next
+"""What a host does where regions of the screen are dealt out: it sends tables, and makes the next
 one of what was counted."""
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.balancing.learnt_counts import LEARNT_FROM, learnt_counts
+from ...golden.balancing.table_policy import Policy, check_policy, default_policy
 from ...golden.organisations.region_table import packed_table, slots_of, static_table
 from ...golden.specification import commands
 from ...golden.specification.commands import Opcode
@@ -44,6 +46,11 @@ class RegionHost:
 
     ``table``  int64 (regions,): the processing element of each region, row by row, in the next
                picture; at first that with which every machine begins
+    ``policy``  of what it makes tables: ``"learnt"`` of the clocks that it foretells from the last
+               three pictures (until there are three, of the last one's), ``"triangles"`` or
+               ``"clocks"`` of the last picture's counts, ``"static"`` of none.  Learnt where
+               nothing is said, the machine counts clocks and makes no tables itself; else what it
+               counts.  ``InputError`` for what the machine does not count for
 
     Before a picture send ``commands()``, after it give the answers to ``READ_REGIONS`` to
     ``counted``.
@@ -58,8 +65,12 @@ class RegionHost:
     ([1, 1, 0, 1], 4, [])
     """
 
-    def __init__(self, configuration: MachineConfiguration) -> None:
+    def __init__(self, configuration: MachineConfiguration, *,
+                 policy: Policy | None = None) -> None:
         self._configuration = configuration
+        self.policy = policy or default_policy(configuration)
+        check_policy(configuration, self.policy)
+        self._seen: list[Int64] = []  # the counts of the last pictures, the last one first
         self.table = static_table(configuration.dealt_regions.count,
                                   configuration.processing_elements)
         self._sent = self.table
@@ -78,11 +89,16 @@ class RegionHost:
         self.pack(of_regions(self._configuration, self.table, answers))
 
     def pack(self, counts: Int64) -> None:
-        """``counts``: int64 (regions,), row by row; where the machine counts nothing, they are not
-        looked at."""
-        if self._configuration.balance != "static":
-            self.table = packed_table(counts, self._configuration.processing_elements,
-                                      self._configuration.slots)
+        """``counts``: int64 (regions,), row by row, after each picture; where the machine counts
+        nothing, they are not looked at."""
+        if self.policy == "static":
+            return
+        if self.policy == "learnt":
+            self._seen = [np.asarray(counts, np.int64), *self._seen][:LEARNT_FROM]
+            if len(self._seen) == LEARNT_FROM:
+                counts = learnt_counts(self._seen, self._configuration.dealt_regions.columns)
+        self.table = packed_table(counts, self._configuration.processing_elements,
+                                  self._configuration.slots)
 
 
 def of_regions(configuration: MachineConfiguration, table: Int64,

@@ -20,7 +20,7 @@ def region_facts(figures: RegionFigures | None) -> dict[str, Any] | None:
         "region_width": 1 << regions.x_bits,
         "region_height": 1 << regions.y_bits,
         "slots": figures.configuration.slots,
-        "balance": figures.configuration.balance,
+        "balance": figures.policy,
         "balancer": figures.configuration.balancer,
         **region_summary(figures),
         "table": figures.table.tolist(),

@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ...golden.balancing.table_policy import Policy
 from ...golden.cycles.frame_clocks import most_frame_clocks
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification import commands
@@ -47,17 +48,18 @@ class SequenceCommands(Sequence[int]):
 
     Depths and counters are read after the last picture, or after each.  ``starts`` are the places
     of the ``FRAME_START`` of those that have been asked for one after another.  ``tables`` are
-    those by which regions are dealt out for each, if they are.
+    those by which regions are dealt out for each, if they are, by ``policy``.
     """
 
     def __init__(self, configuration: MachineConfiguration, lists: Sequence[DisplayList],
-                 depths: Reading, counters: Reading = "all") -> None:
+                 depths: Reading, counters: Reading = "all", *,
+                 policy: Policy | None = None) -> None:
         self.starts: list[int] = []
         self._configuration = configuration
         self._lists = lists
         self._readings = _readings(configuration, depths, counters)
         self.tables = (None if configuration.regions is None
-                       else RegionTables(configuration, lists))
+                       else RegionTables(configuration, lists, policy=policy))
 
     def of(self, number: int) -> list[int]:
         words = frame_commands(self._configuration, self._lists[number],
@@ -119,14 +121,15 @@ class SequenceFrame:
 
 def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[DisplayList],
                       engine: str, *, triangles: int, depths: Reading = "last",
-                      counters: Reading = "all", progress: Progress | None = None,
-                      memory_seed: int | None = None,
+                      counters: Reading = "all", policy: Policy | None = None,
+                      progress: Progress | None = None, memory_seed: int | None = None,
                       stall_seed: int | None = None) -> Iterator[SequenceFrame]:
     """Each picture of ``lists``, drawn one after another and compared on every scan.
 
     ``triangles`` is how many the longest list has; ``depths`` and ``counters`` say of which
     pictures these are read: a machine that merges one while it draws the next does not do so where
-    it is asked in between.  Lists are asked for, and prepared, while earlier ones are simulated.
+    it is asked in between.  ``policy`` is as ``RegionHost`` has it.  Lists are asked for, and
+    prepared, while earlier ones are simulated.
     Raises ``InputError`` for a list that is too wide for the machine and an engine that cannot run
     here, ``MachineError`` where the machine fails, or a scan shows what was never to be seen.
     """
@@ -134,7 +137,7 @@ def simulate_sequence(configuration: MachineConfiguration, lists: Sequence[Displ
     often = [commands.command(Opcode.FRAME_END)] * frames
     reads = [word for word, whose in _readings(configuration, depths, counters).items()
              for _ in range(frames if whose == "all" else 1)]
-    words = SequenceCommands(configuration, lists, depths, counters)
+    words = SequenceCommands(configuration, lists, depths, counters, policy=policy)
     others = _OTHERS + (0 if configuration.regions is None else configuration.dealt_regions.count)
     job = Job(
         configuration, words,

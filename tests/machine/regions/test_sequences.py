@@ -1,7 +1,7 @@
 """Sequences of pictures whose regions are dealt out anew for each, on compiled machines.
 
 Every picture on every scan, every depth, every count of a region and every table that a machine
-makes itself equals the golden model's.
+makes itself equals the golden model's.  A host learns from the clocks of three pictures.
 """
 
 from itertools import pairwise
@@ -9,6 +9,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from cardcage.golden.balancing.learnt_counts import learnt_counts
+from cardcage.golden.organisations.region_table import packed_table
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
@@ -32,7 +34,7 @@ LISTS = [listed(*numbers) for numbers in ((14, 9, 1), (4200, 9, 2), (9, 60, 3), 
 
 #: Where elements times slots are as many as the regions, all are full whatever the table.
 MACHINES = {
-    "3 elements, all slots full": {"cards": "3x(PM)", "regions": (6, 5), "slots": 10},
+    "3 elements, all slots full, learnt": {"cards": "3x(PM)", "regions": (6, 5), "slots": 10},
     "4 elements, two of them empty, static": {
         "cards": "4x(PMM)", "regions": (1, 2), "slots": 1, "balance": "static"},
     "5 elements, triangles": {"cards": "5x(PM)", "regions": (6, 5), "slots": 6,
@@ -68,6 +70,13 @@ def test_every_picture_and_every_count(fields):
             assert one.first_scan + one.scans == other.first_scan
             same = np.array_equal(one.regions.table, other.regions.table)
             assert same == (configuration.balance == "static")
+        if frames[0].regions.policy == "learnt":  # the fourth picture's table is the first such
+            foretold = learnt_counts([frame.regions.counts for frame in frames[2::-1]],
+                                     configuration.dealt_regions.columns)
+            learnt = packed_table(foretold, configuration.processing_elements, configuration.slots)
+            assert frames[3].regions.table.tolist() == learnt.tolist()
+            assert not np.array_equal(learnt, packed_table(
+                frames[2].regions.counts, configuration.processing_elements, configuration.slots))
         counted = [frame.regions.slot_counts is not None for frame in frames]
         assert counted == [configuration.balance != "static"] * 4
         made = [frame.regions.read_table is not None for frame in frames]

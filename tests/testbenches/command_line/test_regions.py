@@ -7,7 +7,7 @@ from click.testing import CliRunner
 from refusals import refusal
 
 from cardcage.testbenches.command_line.cli import main
-from cardcage.testbenches.machine_options import MachineOptions, option_words
+from cardcage.testbenches.machine_options import MachineOptions, machine_without_scene, option_words
 
 SCENE = "random:n=12,size=8,seed=5"
 
@@ -42,7 +42,9 @@ def refuses(*arguments):
     (["--slots", 3], "--slots: is for regions that are dealt out; give --regions"),
     (["--balance", "clocks"], "--balance: is for regions that are dealt out"),
     (["--balancer", "host"], "--balancer: is for regions that are dealt out"),
-    (["--balance", "even"], "'even' is not one of 'static', 'triangles', 'clocks'"),
+    (["--balance", "even"], "'even' is not one of 'static', 'triangles', 'clocks', 'learnt'"),
+    (["--regions", "8x8", "--balance", "learnt", "--balancer", "hardware"],
+     "--balance: learnt is for a host; the hardware packs the last picture's counts"),
 ])
 def test_what_is_refused(words, said):
     assert said in refuses("plan", SCENE, *words)
@@ -68,7 +70,7 @@ def test_the_help_teaches_by_example(command):
     words = " ".join(run(command, "--help").stdout.split())
     for part in ("--regions COLUMNSxROWS", "Blazek's decompositions", "'4x(PMM)' --regions 1x4 his "
                  "strips", "2x2 his grid", "Ellsworth's", "--slots", "--balance",
-                 "[static|triangles|clocks]", "--balancer", "[host|hardware]"):
+                 "[static|triangles|clocks|learnt]", "--balancer", "[host|hardware]"):
         assert part in words, part
 
 
@@ -86,7 +88,18 @@ def test_the_options_in_words():
                                      "--balancer", "hardware"]
 
 
-def test_pictures_of_a_machine():
+@pytest.mark.parametrize(("balance", "balancer", "counted", "policy"), [
+    (None, None, "clocks", "learnt"), ("learnt", "host", "clocks", "learnt"),
+    ("clocks", None, "clocks", "clocks"), ("triangles", None, "triangles", "triangles"),
+    (None, "hardware", "clocks", "clocks"), ("static", "host", "static", "static")])
+def test_what_is_counted_and_what_tables_are_made_of(balance, balancer, counted, policy):
+    options = MachineOptions(regions=(8, 8), balance=balance, balancer=balancer)
+    configuration = machine_without_scene(options)
+    assert configuration.balance == counted and options.policy(configuration) == policy
+
+
+def test_pictures_of_a_machine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     result = run("render", SCENE, "--size", "8x8", "--cards", "3x(PM)", "--regions", "4x2",
                  "--frames", 2, "--balancer", "hardware", "--engine", "pysim")
     assert result.exit_code == 0, result.output
@@ -96,8 +109,24 @@ def test_pictures_of_a_machine():
     assert result.stderr == ""
 
 
-def test_cages_side_by_side():
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "balanced by learnt clocks, by the host"),
+    (["--balance", "clocks"], "balanced by clocks, by the host")], ids=str)
+def test_the_tables_of_a_sequence(tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    result = run("render", "tetra:depth=1", "--size", "8x8", "--cards", "3x(PM)", "--regions",
+                 "4x2", "--frames", 2, "--engine", "pysim", *words)
+    assert result.exit_code == 0, result.output
+    assert said in result.stdout
+    folder = tmp_path / "cardcage-out"
+    [report] = folder.rglob("report.json")
+    assert json.loads(report.read_text())["regions"]["balance"] == (
+        "clocks" if words else "learnt")
+
+
+def test_cages_side_by_side(tmp_path, monkeypatch):
     """What is asked of all is asked of those that can be."""
+    monkeypatch.chdir(tmp_path)
     result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",
                  "--cards", "2x(PMC)", "--immediate", "--packet", "contiguous", "--balance",
                  "triangles", "--engine", "pysim", "--json")

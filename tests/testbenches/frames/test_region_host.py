@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cardcage.golden.balancing.learnt_counts import learnt_counts
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind, opcode_of, unpack
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.frames.conversation import owed_to, responses_owed
 from cardcage.testbenches.frames.frame_job import frame_commands, frame_job
 from cardcage.testbenches.frames.region_host import (
@@ -53,13 +55,20 @@ def test_counts_of_slots_and_of_regions(seed):
     assert of_regions(MACHINE, table, slots.ravel().tolist()).tolist() == counts.tolist()
 
 
-def test_a_host_from_picture_to_picture():
-    host = RegionHost(MACHINE)
+@pytest.mark.parametrize("policy", ["clocks", "learnt", None])
+def test_a_host_from_picture_to_picture(policy):
+    """It learns from three pictures; until then it has the last one's counts."""
+    host = RegionHost(MACHINE, policy=policy)
+    assert host.policy == (policy or "learnt")
     assert host.table.tolist() == static_table(20, 3).tolist() and host.commands() == []
-    for seed in range(3):
-        counts = np.random.default_rng(seed).integers(0, 100, 20)
+    seen = []
+    for number in range(6):
+        counts = np.random.default_rng(number).integers(0, 100, 20)
+        seen = [counts, *seen]
         host.counted(of_slots(MACHINE, host.table, counts).ravel())
-        assert host.table.tolist() == packed_table(counts, 3, 8).tolist()
+        weighed = (learnt_counts(seen[:3], 5) if number >= 2 and policy != "clocks" else counts)
+        assert host.table.tolist() == packed_table(weighed, 3, 8).tolist()
+        assert host.table.tolist() != packed_table(counts, 3, 8).tolist() or weighed is counts
         assert read(MACHINE, host.commands())[1] == host.table.tolist()
         assert host.commands() == []  # it knows now
 
@@ -69,6 +78,17 @@ def test_a_host_that_sends_no_table(fields):
     host = RegionHost(MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), slots=8, **fields))
     host.counted(np.arange(24))
     assert host.commands() == []
+
+
+def test_a_machine_that_makes_its_tables_of_counts_as_they_are():
+    machine = MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), balancer="hardware")
+    with pytest.raises(InputError, match=r"^balance: learnt is for a host"):
+        RegionHost(machine, policy="learnt")
+    host = RegionHost(machine)
+    for number in range(4):
+        counts = np.random.default_rng(number).integers(0, 100, 20)
+        host.pack(counts)
+        assert host.table.tolist() == packed_table(counts, 3, machine.slots).tolist()
 
 
 @pytest.mark.parametrize(("fields", "owed"), [

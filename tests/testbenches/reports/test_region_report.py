@@ -40,7 +40,7 @@ def test_one_picture(answers, tmp_path):
     regions = json.loads((tmp_path / "report.json").read_text())["regions"]
     assert (regions["columns"], regions["rows"], regions["region_width"]) == (4, 4, 4)
     assert regions["slots"] == 7 and regions["table"] == [region % 3 for region in range(16)]
-    assert regions["counted"] == regions["balance"] == "clocks" and regions["read"]
+    assert (regions["counted"], regions["balance"]) == ("clocks", "learnt") and regions["read"]
     assert regions["equal"] and not regions["table_read"] and regions["differences"] == []
     assert sum(regions["counts"]) == regions["total"] == sum(regions["per_pe"]) > 0
     assert regions["busiest"] == np.argmax(regions["per_pe"])
@@ -49,7 +49,7 @@ def test_one_picture(answers, tmp_path):
         regions["table"], regions["next_table"], strict=True)) > 0
     page = (tmp_path / "report.html").read_text()
     assert f"{100 * regions['utilisation']:.1f} %" in page and "entry by entry" in page
-    assert "none: regions" in page
+    assert "none: regions" in page and "clocks that it foretells from the last three" in page
 
 
 def test_a_sequence(answers, tmp_path):
@@ -65,6 +65,8 @@ def test_a_sequence(answers, tmp_path):
     assert facts["regions"]["table"] == rendering.frames[-1].regions.table.tolist()
     page = (tmp_path / "report.html").read_text()
     assert page.count('alt="Regions of picture') == 3 and "Utilisation of the" in page
+    assert facts["regions"]["balance"] == "clocks" and "clocks of the picture before" in (
+        " ".join(page.split()))
 
 
 def test_a_count_that_is_not_goldens(answers, tmp_path):

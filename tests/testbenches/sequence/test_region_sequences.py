@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from golden_machine import GoldenMachine
 
+from cardcage.golden.balancing.learnt_counts import learnt_counts
 from cardcage.golden.organisations.region_table import packed_table, static_table
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
@@ -37,24 +38,30 @@ def frames_of(monkeypatch):
 
 
 @pytest.mark.parametrize("depths", ["last", "all"])
-@pytest.mark.parametrize("fields", [
-    {"balance": "static"}, {"balance": "triangles"}, {"balance": "clocks"},
-    {"balance": "clocks", "balancer": "hardware"}, {"slots": 7},
-    {"cards": "4x(PMM)", "regions": (3, 2), "slots": 2}], ids=str)
-def test_every_picture_by_the_table_of_the_last_ones_counts(frames_of, fields, depths):
+@pytest.mark.parametrize(("fields", "policy"), [
+    ({"balance": "static"}, None), ({"balance": "triangles"}, None), ({}, None), ({}, "clocks"),
+    ({"balancer": "hardware"}, None), ({"slots": 7}, "clocks"),
+    ({"cards": "4x(PMM)", "regions": (3, 2), "slots": 2}, "learnt")], ids=str)
+def test_every_picture_by_the_table_of_the_counts_before(frames_of, fields, policy, depths):
     configuration = machine(**fields)
-    frames = frames_of(configuration, depths=depths)
+    frames = frames_of(configuration, depths=depths, policy=policy)
     assert all(frame.equal and not frame.regions.differences for frame in frames)
     everything = SIZE["width"] * SIZE["height"]
     assert [frame.comparison.depths_compared for frame in frames] == (
         [everything if depths == "all" else 0] * 3 + [everything])
     regions, elements = configuration.dealt_regions.count, configuration.processing_elements
-    tables = [static_table(regions, elements)]
+    learns = configuration.balancer == "host" and configuration.balance == "clocks" and (
+        policy != "clocks")
+    tables, seen = [static_table(regions, elements)], []
     for listed in LISTS:
+        seen = [golden_counts(configuration, listed), *seen][:3]
+        counts = (learnt_counts(seen, configuration.dealt_regions.columns)
+                  if learns and len(seen) == 3 else seen[0])
         tables.append(tables[0] if configuration.balance == "static" else packed_table(
-            golden_counts(configuration, listed), elements, configuration.slots))
+            counts, elements, configuration.slots))
     for frame, table, following in zip(frames, tables, tables[1:], strict=False):
         figures = frame.regions
+        assert figures.policy == ("learnt" if learns else configuration.balance)
         assert figures.table.tolist() == table.tolist()
         assert figures.next_table.tolist() == following.tolist()
         assert (figures.slot_counts is None) == (configuration.balance == "static")
@@ -68,7 +75,8 @@ def test_every_picture_by_the_table_of_the_last_ones_counts(frames_of, fields, d
 def test_a_table_is_sent_where_it_is_another():
     """Of an empty picture all regions weigh as much; then there is nothing new to be said."""
     def sent(configuration, lists):
-        words = [opcode_of(word) for word in SequenceCommands(configuration, lists, "last")]
+        words = [opcode_of(word) for word in SequenceCommands(
+            configuration, lists, "last", policy=configuration.balance)]
         starts = [place for place, opcode in enumerate(words) if opcode == Opcode.FRAME_START]
         return [words[place - 1] == Opcode.REGION for place in starts], words.count(Opcode.REGION)
 

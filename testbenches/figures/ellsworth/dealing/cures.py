@@ -8,17 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .....golden.balancing import learnt_counts as learnt
 from .frame_loads import BoxLoads
 
 Int64 = NDArray[np.int64]
 Float64 = NDArray[np.float64]
 
-#: Between which the growth of a region is thought to go on: it turns half round at least, or goes
-#: on half as fast again at most.
-GOES_ON = (-0.5, 1.5)
-
-#: How much of a count is thought to spread to its neighbours: between none and as blurred.
-SPREADS = (0.0, 1.0)
+#: Between which the growth of a region is thought to go on.
+GOES_ON = (float(learnt.GOES_ON[0]), float(learnt.GOES_ON[1]))
 
 #: Who can use a cure.
 COUNTERS, BOXES, NOBODY = "counters", "boxes ahead", "-"
@@ -60,28 +57,11 @@ class Seen:
         return np.asarray(field.reshape(-1), np.float64)
 
 
-def _foretold(growth: Float64, *by: Float64) -> list[float]:
-    """By what factor each would have foretold the growth best, in least squares together."""
-    return [float(factor) for factor in np.linalg.lstsq(np.stack(by, axis=1), growth)[0]]
-
-
-def _held(factor: float, bounds: tuple[float, float]) -> float:
-    return min(max(factor, bounds[0]), bounds[1])
-
-
 def _growth_learnt(seen: Seen) -> Float64:
-    [goes_on] = _foretold(seen.growth, seen.growth_before)
-    return seen.last + _held(goes_on, GOES_ON) * seen.growth
-
-
-def _growth_and_blur_learnt(seen: Seen) -> Float64:
-    before_last = seen.clocks[1].astype(np.float64)
-    growth, growth_before, last, before = (
-        seen.blurred(each, 1 / 4)
-        for each in (seen.growth, seen.growth_before, seen.last, before_last))
-    goes_on, spreads = _foretold(seen.growth, growth_before, before - before_last)
-    return (seen.last + _held(goes_on, GOES_ON) * growth
-            + _held(spreads, SPREADS) * (last - seen.last))
+    """By the factor by which the growth before would have foretold the growth best, in least
+    squares."""
+    goes_on = seen.growth @ seen.growth_before / max(seen.growth_before @ seen.growth_before, 1.0)
+    return seen.last + min(max(float(goes_on), GOES_ON[0]), GOES_ON[1]) * seen.growth
 
 
 def _boxes_at_cost(seen: Seen) -> Float64:
@@ -119,7 +99,8 @@ CURES = (
     Cure("growth blurred", COUNTERS,
          lambda seen: seen.last + seen.blurred(seen.growth, 1 / 8)),
     Cure("growth learnt", COUNTERS, _growth_learnt),
-    Cure("growth and blur learnt", COUNTERS, _growth_and_blur_learnt),
+    Cure("growth and blur learnt", COUNTERS,
+         lambda seen: learnt.learnt_counts(seen.clocks, seen.shape[1])),
     Cure("coming boxes", BOXES, lambda seen: seen.boxes[0].boxes),
     Cure("coming boxes' pixels", BOXES, lambda seen: seen.boxes[0].pixels),
     Cure("coming boxes at last frame's cost", BOXES, _boxes_at_cost),
