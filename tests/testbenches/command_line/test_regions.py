@@ -98,8 +98,7 @@ def test_what_is_counted_and_what_tables_are_made_of(balance, balancer, counted,
     assert configuration.balance == counted and options.policy(configuration) == policy
 
 
-def test_pictures_of_a_machine(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_pictures_of_a_machine():
     result = run("render", SCENE, "--size", "8x8", "--cards", "3x(PM)", "--regions", "4x2",
                  "--frames", 2, "--balancer", "hardware", "--engine", "pysim")
     assert result.exit_code == 0, result.output
@@ -112,8 +111,7 @@ def test_pictures_of_a_machine(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("words", "said"), [
     ([], "balanced by learnt clocks, by the host"),
     (["--balance", "clocks"], "balanced by clocks, by the host")], ids=str)
-def test_the_tables_of_a_sequence(tmp_path, monkeypatch, words, said):
-    monkeypatch.chdir(tmp_path)
+def test_the_tables_of_a_sequence(tmp_path, words, said):
     result = run("render", "tetra:depth=1", "--size", "8x8", "--cards", "3x(PM)", "--regions",
                  "4x2", "--frames", 2, "--engine", "pysim", *words)
     assert result.exit_code == 0, result.output
@@ -124,9 +122,8 @@ def test_the_tables_of_a_sequence(tmp_path, monkeypatch, words, said):
         "clocks" if words else "learnt")
 
 
-def test_cages_side_by_side(tmp_path, monkeypatch):
+def test_cages_side_by_side():
     """What is asked of all is asked of those that can be."""
-    monkeypatch.chdir(tmp_path)
     result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",
                  "--cards", "2x(PMC)", "--immediate", "--packet", "contiguous", "--balance",
                  "triangles", "--engine", "pysim", "--json")
