@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -68,11 +69,11 @@ class Cage:
     def options(self, asked: MachineOptions) -> MachineOptions:
         """What is asked of this cage, of all that is asked of every one."""
         merge = merge_card(self.spelled or "")
+        dealing: dict[str, Any] = {name: None if self.regions is None else getattr(asked, name)
+                                   for name in ("slots", "balance", "balancer")}
         return replace(asked, cards=self.cards, retain=self.retained or None,
                        list_words=asked.list_words if self.retained else None,
-                       regions=self.regions, **{
-                           name: None if self.regions is None else getattr(asked, name)
-                           for name in ("slots", "balance", "balancer")},
+                       regions=self.regions, **dealing,
                        packet=None if merge is None else asked.packet,
                        queue=asked.queue if merge == DIRECT_MERGE else None)
 

@@ -81,7 +81,7 @@ def owed_to(organisation: Organisation, word: int) -> list[Owed]:
     if opcode == Opcode.READ_COUNTERS:
         return _counters(organisation)
     if opcode in (Opcode.READ_REGIONS, Opcode.READ_TABLE):
-        return _of_regions(organisation, opcode)
+        return _of_regions(organisation, Opcode(opcode))
     return [Owed(ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)]
 
 

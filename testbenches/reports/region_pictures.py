@@ -44,7 +44,7 @@ def region_picture(figures: RegionFigures, picture: Pixels) -> Pixels:
                                (y, regions.y_bits, regions.rows)):
         if bits > 1 and count > 1:  # there is something between the lines
             shown[(place & (1 << bits) - 1 == 0) & (place > 0)] *= 0.55
-    return np.rint(255 * shown).astype(np.uint8)
+    return np.asarray(np.rint(255 * shown), np.uint8)
 
 
 def utilisation_chart(frames: Sequence[dict[str, Any]]) -> str:
@@ -72,7 +72,8 @@ def utilisation_chart(frames: Sequence[dict[str, Any]]) -> str:
 def _greatest(regions: dict[str, Any]) -> float:
     """Above 1 one region alone keeps its processing element longer than all others need."""
     greatest: int = regions["greatest_region"]
-    return greatest * len(regions["per_pe"]) / max(regions["total"], 1)
+    total: int = regions["total"]
+    return greatest * len(regions["per_pe"]) / max(total, 1)
 
 
 def load_chart(facts: dict[str, Any]) -> str:

@@ -85,7 +85,7 @@ class PointJob:
         columns, rows = nearest_regions(self.size, self.processors)
         machine = plan(lists, cards=POINT_CARDS.format(self.processors), memory_ports=2,
                        clocks_per_pixel=2, regions=(columns, rows), balance=CLOCKS).configuration
-        frames = list(simulate_sequence(machine, lists, self.engine, policy=CLOCKS,
+        frames = list(simulate_sequence(machine, lists, self.engine, policy="clocks",
                                         triangles=max(each.triangles for each in lists)))
         return {"model": self.model.name, "processors": self.processors, "columns": columns,
                 "rows": rows, "utilisation": [_measured(frame) for frame in frames],

@@ -60,8 +60,9 @@ class Seen:
 def _growth_learnt(seen: Seen) -> Float64:
     """By the factor by which the growth before would have foretold the growth best, in least
     squares."""
-    goes_on = seen.growth @ seen.growth_before / max(seen.growth_before @ seen.growth_before, 1.0)
-    return seen.last + min(max(float(goes_on), GOES_ON[0]), GOES_ON[1]) * seen.growth
+    before = float(seen.growth_before @ seen.growth_before)
+    goes_on = float(seen.growth @ seen.growth_before) / max(before, 1.0)
+    return seen.last + min(max(goes_on, GOES_ON[0]), GOES_ON[1]) * seen.growth
 
 
 def _boxes_at_cost(seen: Seen) -> Float64:
