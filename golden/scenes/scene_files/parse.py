@@ -79,8 +79,9 @@ class _Parser:
         elif name in VIEW_WORDS:
             self._view_word(VIEW_WORDS[name], first, rest)
         else:
-            raise self._wrong(first, f"{first.text!r} is no definition; "
-                              f"{nearest(name, [OBJECT, *VIEW_WORDS])}")
+            remedy = (f"did you mean {OBJECT} {name}?" if name in KINDS
+                      else nearest(name, [OBJECT, *VIEW_WORDS]))
+            raise self._wrong(first, f"{first.text!r} is no definition; {remedy}")
 
     def finished(self) -> SceneDescription:
         """All of it, once no line follows."""

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ...specification.errors import InputError
 from ..camera import Camera, View, seen_from
 from ..mesh import UP_Y, Mesh
 from .description import SceneDescription
@@ -38,5 +39,8 @@ def scene_camera(description: SceneDescription, view: View) -> Camera:
         up = float(upwards[0]), float(upwards[1]), float(upwards[2])
     half = math.tan(math.radians(description.field_of_view) / 2.0) / view.zoom
     field_of_view = max(1.0, math.degrees(2.0 * math.atan(half)))
-    return Camera(eye, target, up, description.field_of_view if view.zoom == 1.0
-                  else field_of_view)
+    try:
+        return Camera(eye, target, up, description.field_of_view if view.zoom == 1.0
+                      else field_of_view)
+    except InputError as error:
+        raise InputError(f"{description.path}: {error}") from None

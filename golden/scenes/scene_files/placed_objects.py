@@ -62,7 +62,10 @@ def placed_objects(description: SceneDescription, most_triangles: int) -> Placed
         if key not in numbers:
             _check_triangles(where, triangles + _fewest(definition), most_triangles)
             numbers[key] = len(meshes)
-            meshes.append(_turned(_unit_mesh(definition), definition))
+            try:
+                meshes.append(_turned(_unit_mesh(definition), definition))
+            except InputError as error:
+                raise InputError(f"{where}: {error}") from None
         triangles += definition.number * meshes[numbers[key]].triangles
         _check_triangles(where, triangles, most_triangles)
         mesh += [numbers[key]] * definition.number

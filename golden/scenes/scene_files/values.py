@@ -65,8 +65,9 @@ def vector(low: float, high: float, *, direction: bool = False) -> ValueKind:
 
     def parse(text: str) -> Vector:
         parts = text.split(",")
-        if len(parts) != 3:
-            raise WrongValueError(f"{text!r} is not three numbers such as 0,1,0")
+        if len(parts) != 3 or not all(parts):
+            raise WrongValueError(f"{text!r} is not three numbers such as 0,1,0; leave no blanks "
+                                  "between them")
         x, y, z = (_number(part, low, high) for part in parts)
         if direction and math.hypot(x, y, z) < 1e-6:
             raise WrongValueError(f"{text!r} is no direction; take three numbers, not all 0")
@@ -89,6 +90,8 @@ def _color(text: str, *more: str) -> Color | str:
     if text.lower() in more:
         return text.lower()
     try:
+        if text.startswith("#") and len(text) != len("#rrggbb"):
+            raise ValueError
         red, green, blue = ImageColor.getrgb(text)[:3]
     except ValueError:
         remedy = (f"write {text[:1]}rrggbb with six digits" if text.startswith("#")

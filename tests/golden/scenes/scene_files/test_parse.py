@@ -146,7 +146,7 @@ def valid_scene(numbers: random.Random) -> str:
 
 
 def color(numbers):
-    return lambda: numbers.choice(("red", "gray", "#102030", "#fff"))
+    return lambda: numbers.choice(("red", "gray", "#102030", "#FFF0e1"))
 
 
 def mutated(text: str, numbers: random.Random) -> str:
