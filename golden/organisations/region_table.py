@@ -7,13 +7,19 @@ The slots of an element are its regions in ascending order.
 from __future__ import annotations
 
 import heapq
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..specification.errors import InputError
+from ..specification.ranges import MAXIMUM_SIZE, check_whole
+from ..specification.regions import MAXIMUM_REGIONS
 
 Int64 = NDArray[np.int64]
+
+#: Weights of all regions together stay far below what int64 holds.
+MOST_COUNTED = 1 << 48
 
 
 def static_table(regions: int, elements: int) -> Int64:
@@ -30,6 +36,15 @@ def slots_of(table: Int64) -> Int64:
     return slots
 
 
+def _checked(counts: Any) -> Int64:
+    """``InputError`` for what are no counts of regions."""
+    numbers = np.asarray(counts)
+    if (numbers.ndim != 1 or not np.issubdtype(numbers.dtype, np.integer)
+            or (numbers < 0).any() or (numbers > MOST_COUNTED).any()):
+        raise InputError("counts: are not whole numbers from 0 on, one for each region")
+    return numbers.astype(np.int64)
+
+
 def packed_table(counts: Int64, elements: int, slots: int) -> Int64:
     """The table for the next picture, from what was counted of each region in the last one.
 
@@ -41,17 +56,22 @@ def packed_table(counts: Int64, elements: int, slots: int) -> Int64:
     Ellsworth 1994, the greedy multiple-bin packing before figure 3.
 
     ``counts``           int64 (regions,), or anything that numpy makes that of
-    ``elements, slots``  regions of each processing element; together there is room for all, or
-                         ``InputError``
+    ``elements, slots``  how many processing elements, and regions of each; together there is room
+                         for all
+
+    Raises ``InputError`` for anything else.
 
     >>> import cardcage
     >>> cardcage.packed_table([7, 1, 40, 2], elements=2, slots=3).tolist()
     [1, 1, 0, 1]
     """
+    counts = _checked(counts)
+    for name, number in (("elements", elements), ("slots", slots)):
+        check_whole(name, number, 1, MAXIMUM_REGIONS * MAXIMUM_SIZE)
     if elements * slots < len(counts):
         raise InputError(f"slots: {slots} in each of {elements} processing elements do not hold "
                          f"{len(counts)} regions")
-    weights = np.asarray(counts, np.int64) + 1
+    weights = counts + 1
     table = np.empty(len(weights), np.int64)
     # Load, regions, number of each element that has room.
     room = [(0, 0, element) for element in range(elements)]

@@ -24,6 +24,7 @@ from .regions import (
     Balancer,
     RegionedPicture,
     Regions,
+    check_region_counts,
     default_slots,
     regions_of,
 )
@@ -277,11 +278,9 @@ class MachineConfiguration(Widths):
                              "nothing; take balance triangles or clocks")
 
     def _check_regions(self) -> int:
-        """The slots of each processing element.  Raises ``InputError`` where regions cannot be
-        dealt out."""
+        """The slots of each processing element; ``InputError`` where regions cannot be dealt."""
         assert self.regions is not None
-        for name, number in zip(("columns", "rows"), self.regions, strict=True):
-            check_whole(f"regions: {name}", number, 1, MAXIMUM_SIZE)
+        check_region_counts(self.regions)
         regions, elements = self.dealt_regions, self.processing_elements
         if self.merge is not None:
             raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
@@ -291,8 +290,9 @@ class MachineConfiguration(Widths):
                 raise InputError(f"{name}: is settled by the regions; leave it out")
         inside = self.interlace
         if max(inside.unit_mask("x") >> regions.x_bits, inside.unit_mask("y") >> regions.y_bits):
+            wide, high = (1 << inside.unit_mask(axis).bit_length() for axis in "xy")
             raise InputError(f"regions: {1 << regions.x_bits}x{1 << regions.y_bits} pixels do not "
-                             f"spread over {inside.units} memory units; take larger ones")
+                             f"spread over {inside.units} memory units; take {wide}x{high} or more")
         slots = self.slots or default_slots(regions.count, elements)
         check_whole("slots", slots, 1, regions.count)
         if slots * elements < regions.count:
@@ -301,7 +301,8 @@ class MachineConfiguration(Widths):
                              "at least")
         if slots << self.slot_bits > MAXIMUM_WORDS:
             raise InputError(f"slots: {slots} need {slots << self.slot_bits} words in each memory "
-                             f"unit, at most {MAXIMUM_WORDS}; take fewer, or add memory units")
+                             f"unit, at most {MAXIMUM_WORDS}; add memory units or processing "
+                             "elements")
         if self.words not in (0, slots << self.slot_bits):  # as it is in a copy
             raise InputError("words: is settled by the regions; leave it out")
         return slots

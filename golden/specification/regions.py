@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .ranges import MAXIMUM_SIZE, check_whole
 
 MAXIMUM_REGIONS = 1024
 
@@ -69,6 +70,14 @@ class RegionedPicture:
     height: int
     x_shift: int = 0
     y_shift: int = 0
+
+
+def check_region_counts(regions: object) -> None:
+    """Raise ``InputError`` unless that is a tuple of columns and rows."""
+    if not isinstance(regions, tuple) or len(regions) != 2:
+        raise InputError(f"regions: {regions!r} is not (columns, rows), such as (8, 8)")
+    for name, number in zip(("columns", "rows"), regions, strict=True):
+        check_whole(f"regions: {name}", number, 1, MAXIMUM_SIZE)
 
 
 def regions_of(width: int, height: int, columns: int, rows: int) -> Regions:

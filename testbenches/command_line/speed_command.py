@@ -107,6 +107,8 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
     """
     chosen = {name: values for name, values in axes.items() if values is not None}
     standard = vars(ALL_MACHINES) if everything else {}
+    if axes["balances"] and not any(axes["regions"] or ()):
+        raise InputError("--balance: is for regions that are dealt out; give --regions as well")
     machines = bench_machines(MachineAxes(**standard | chosen))
     if plot is not None and not (varied(machines) or beside_interlace(machines)):
         raise InputError("--plot: nothing to draw along; give --fifo, --block or --elements "

@@ -93,6 +93,12 @@ class CompareOptions:
                 raise InputError(f"nodes: {nodes} is not from 1 to {MAXIMUM_NODES}; a cage of a "
                                  "sweep has so many")
 
+        regions = any(Cage.named(cards).regions for cards in self.cards)
+        for name in ("slots", "balance", "balancer"):
+            if getattr(self.machine, name) is not None and not regions:
+                raise InputError(f"--{name}: is for cages whose regions are dealt out; name one, "
+                                 "as in 4x(PMM)/8x8, or leave it out")
+
     def cages(self) -> list[Cage]:
         """Of cages of nodes the one that is sent its triangles in each frame comes first."""
         found: dict[Cage, None] = {}

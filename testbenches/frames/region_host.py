@@ -14,6 +14,7 @@ from ...golden.organisations.region_table import packed_table, slots_of, static_
 from ...golden.specification import commands
 from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
+from ...golden.specification.errors import InputError
 
 Int64 = NDArray[np.int64]
 
@@ -67,25 +68,44 @@ class RegionHost:
 
     def __init__(self, configuration: MachineConfiguration, *,
                  policy: Policy | None = None) -> None:
+        if configuration.regions is None:
+            raise InputError("regions: the machine deals none out; give regions, such as (8, 8)")
         self._configuration = configuration
         self.policy = policy or default_policy(configuration)
         check_policy(configuration, self.policy)
         self._seen: list[Int64] = []  # the counts of the last pictures, the last one first
         self.table = static_table(configuration.dealt_regions.count,
                                   configuration.processing_elements)
-        self._sent = self.table
+        self._sent = self.table.copy()
 
     def commands(self) -> list[int]:
         """What tells the machine of ``table``; nothing where it knows, or makes it itself."""
+        self._check_table()
         known = np.array_equal(self.table, self._sent)
-        self._sent = self.table
+        self._sent = np.array(self.table)
         if known or self._configuration.balancer == "hardware":
             return []
         return table_commands(self._configuration, self.table)
 
+    def _check_table(self) -> None:
+        """A host may give itself another table: ``InputError`` where a machine would refuse it."""
+        configuration = self._configuration
+        elements, count = configuration.processing_elements, configuration.dealt_regions.count
+        if np.shape(self.table) != (count,):
+            raise InputError(f"table: has the shape {np.shape(self.table)}, needs {(count,)}: the "
+                             "processing element of each region")
+        if not np.isin(self.table, np.arange(elements)).all():
+            raise InputError(f"table: names none of the processing elements 0 to {elements - 1}")
+        if np.bincount(self.table).max() > configuration.slots:
+            raise InputError(f"table: gives one processing element more than its "
+                             f"{configuration.slots} slots; take fewer, or more slots")
+
     def counted(self, answers: Sequence[int] | Int64) -> None:
         """``answers``: the values of ``REGION_COUNT`` after a picture that was drawn by ``table``:
-        processing element by processing element, of each its slots."""
+        processing element by processing element, of each its slots.  ``InputError`` where there
+        are not as many."""
+        if self._configuration.balance == "static":
+            return  # it counts nothing
         self.pack(of_regions(self._configuration, self.table, answers))
 
     def pack(self, counts: Int64) -> None:
@@ -104,6 +124,10 @@ class RegionHost:
 def of_regions(configuration: MachineConfiguration, table: Int64,
                answers: Sequence[int] | Int64) -> Int64:
     """int64 (regions,): what was counted of each, from the answers to ``READ_REGIONS``."""
+    owed = configuration.processing_elements * configuration.slots
+    if len(answers) != owed:
+        raise InputError(f"counts: {len(answers)} answers to READ_REGIONS, the machine gives "
+                         f"{owed}: {configuration.slots} slots of each processing element")
     slots = np.reshape(np.asarray(answers, np.int64), (-1, configuration.slots))
     counts: Int64 = slots[table, slots_of(table)]
     return counts

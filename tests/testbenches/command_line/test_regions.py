@@ -148,3 +148,14 @@ def test_a_plan():
     assert lines["words a memory unit"]["value"] == f"{7 * 32}"
     assert facts["command"].endswith("--cards '3x(PMM)' --size 32x32 --regions 4x4")
     assert facts["machine"]["regions"] == [4, 4] and facts["cycles"]["estimated"] > 0
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["compare", SCENE, "--cards", "2x(PM)", "--slots", 2],
+     "--slots: is for cages whose regions are dealt out; name one, as in 4x(PMM)/8x8"),
+    (["compare", SCENE, "--cards", "2x(PM)", "--balance", "static"], "--balance: is for cages"),
+    (["bench", "one_pixel", "--engine", "model", "--balance", "static"],
+     "--balance: is for regions that are dealt out; give --regions as well"),
+], ids=str)
+def test_what_no_cage_or_machine_was_asked_for(words, said):
+    assert said in refuses(*words)

@@ -127,3 +127,29 @@ def test_the_example_of_the_page():
     [example] = re.findall(r"^```python\n(.*?)^```", PAGE.read_text("utf-8"),
                            re.DOTALL | re.MULTILINE)
     exec(example, {})
+
+
+def test_what_a_host_refuses():
+    host = RegionHost(MACHINE_OF_HOST)
+    owed = MACHINE_OF_HOST.processing_elements * MACHINE_OF_HOST.slots
+    for answers in (0, owed - 1, owed + MACHINE_OF_HOST.slots):
+        with pytest.raises(InputError, match=f"counts: {answers} answers to READ_REGIONS, the "
+                           f"machine gives {owed}"):
+            host.counted([0] * answers)
+    for table, message in (([0, 1], "table: has the shape"), ([0, 1, 2, 3], "names none of the"),
+                           ([1, 1, 1, 1], "more than its 3 slots")):
+        host.table = np.array(table)
+        with pytest.raises(InputError, match=message):
+            host.commands()
+    with pytest.raises(InputError, match="regions: the machine deals none out"):
+        RegionHost(MachineConfiguration(cards="PM", width=8, height=8))
+
+
+def test_a_table_that_is_changed_in_place_is_sent():
+    host = RegionHost(MACHINE_OF_HOST)
+    host.table[:2] = host.table[1::-1]
+    assert len(host.commands()) == 4 and not host.commands()
+
+
+#: Two elements, four regions, three slots each.
+MACHINE_OF_HOST = MachineConfiguration(cards="2x(PM)", width=16, height=16, regions=(2, 2))
