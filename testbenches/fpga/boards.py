@@ -116,7 +116,8 @@ BOARDS = {
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
     "element-of-regions": Board("processing element, flat, 128 regions, 16 elements",
-                                "processing_element", changes={"regions": (16, 8)}, cage=REGIONS),
+                                "processing_element", changes={"regions": (16, 8)},
+                                mapping="plain", cage=REGIONS),
     "balancer": Board("balancer, 128 regions, 16 elements", "balancer",
                       changes={"regions": (16, 8), "balancer": "hardware"}, cage=REGIONS),
 }
