@@ -61,14 +61,16 @@ class BandProbes(wiring.Component):
         m.submodules.own_columns = own = OwnColumns(configuration=configuration)
         wiring.connect(m, wiring.flipped(self.regions), own.regions)
         box = region_box(outline, configuration)
-        bits = len(self.regions.row)
+        bits, inside = len(self.regions.row), configuration.dealt_regions.y_bits
 
         going = Signal()
         band = Signal(bits)
         following = Signal(bits)
         step = Signal(2)  # 0 first row, 1 above the middle, 2 below it, 3 last row
         in_box, sends, passes = Signal(), Signal(), Signal()
-        first, last = band_rows(band, outline, configuration)
+        # From here to what is sent is a long way, so this is ready before it begins.
+        bottom = Signal(configuration.y_bits, reset_less=True)
+        first, last = band_rows(band, outline.top, bottom, configuration)
         m.d.comb += [
             own.element.eq(self.element),
             # Of a box that reaches beyond the last column all bits count.
@@ -83,8 +85,8 @@ class BandProbes(wiring.Component):
         with m.If(self.begin | passes):
             m.d.sync += band.eq(following)
         with m.If(self.begin):
-            m.d.sync += going.eq(1)
-        with m.Elif(passes & (band == cut(box.bottom, bits))):
+            m.d.sync += [going.eq(1), bottom.eq(outline.bottom - 1)]
+        with m.Elif(passes & (band == cut(bottom[inside:], bits))):
             m.d.sync += going.eq(0)
         with m.If(sends):
             m.d.sync += step.eq(step + 1)
@@ -109,7 +111,7 @@ class BandProbes(wiring.Component):
                 above.eq(in_upper),
                 row.y.eq(y),
                 row.rows.eq(y - outline.top),
-                row.short_rows.eq(y - Mux(in_upper, outline.top, outline.middle)),
+                row.short_rows.eq(Mux(in_upper, y - outline.top, y - outline.middle)),
                 row.last.eq(step == 3),
             ]
         m.d.comb += [

@@ -25,9 +25,13 @@ class OwnRegions(wiring.Component):
         The tables, and the number that it has in these.
     column: In(column_bits), row: In(row_bits)
         The upper left one of the regions, at any place.
+    asked: In(4)
+        Row by row, which of the regions are asked for.
     own: Out(4)
-        In the next clock, row by row: they are its own, by the table in use.  Right of the last
-        column and below the last row bits may be anything.
+        In the next clock, of each: it is asked for and its own, by the table in use.  Right of the
+        last column and below the last row bits may be anything.
+    some: Out(1)
+        As early, one of them is; sooner known than which.
 
     Ellsworth 1994: the processors that a primitive is sent to, here asked by each of itself.
     """
@@ -42,7 +46,9 @@ class OwnRegions(wiring.Component):
             "element": In(configuration.element_bits),
             "column": In(regions.column_bits),
             "row": In(regions.row_bits),
+            "asked": In(4),
             "own": Out(4),
+            "some": Out(1),
         })
 
     def elaborate(self, platform):
@@ -63,11 +69,12 @@ class OwnRegions(wiring.Component):
             for right in range(2):
                 even, odd = (Mux(odd_column ^ right, at(row, 1), at(row, 0)) for row in range(2))
                 own.append(Mux(odd_row ^ down, odd, even))
-        m.d.comb += self.own.eq(Cat(own))
+        m.d.comb += [self.own.eq(Cat(own)), self.some.eq(Cat(bits.values()).any())]
         return m
 
     def _bank(self, m, row, column):
-        """The RAM of rows and columns that are even (0) or odd (1); returns what is read."""
+        """The RAM of rows and columns that are even (0) or odd (1); returns what is read, where its
+        region is asked for."""
         lines = self.regions
         half = [max(0, len(place) - 1) for place in (lines.column, lines.row)]
         ram = memory.Memory(shape=1, depth=2 << sum(half), init=[], attrs={"no_rw_check": 1})
@@ -83,7 +90,11 @@ class OwnRegions(wiring.Component):
                 cut((self.column + (1 - column))[1:], half[0]),
                 cut((self.row + (1 - row))[1:], half[1]), lines.table)),
         ]
-        return read.data
+        # The RAM's region is below or right of the place where they are not both even or both odd.
+        asked = Signal(name=f"asked_{row}_{column}")
+        right, down = _odd(self.column) ^ column, _odd(self.row) ^ row
+        m.d.sync += asked.eq(self.asked.bit_select(Cat(right[0], down[0]), 1))
+        return read.data & asked
 
 
 def _odd(place: Value) -> Value:

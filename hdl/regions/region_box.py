@@ -40,13 +40,12 @@ def region_box(box: data.View, configuration: MachineConfiguration) -> RegionBox
     )
 
 
-def band_rows(row: Value, outline: data.View,
+def band_rows(row: Value, top: Value, bottom: Value,
               configuration: MachineConfiguration) -> tuple[Value, Value]:
-    """First and last row of pixels that the box of ``outline`` has in a row of regions, which is
-    one that it meets.  Nothing is added: the one is the box's or a region's first, the other
-    the box's or a region's last."""
-    inside = configuration.dealt_regions.y_bits
-    box = region_box(outline, configuration)
-    first = Mux(row == box.top, outline.top, Cat(C(0, inside), row))
-    last = Mux(row == box.bottom, outline.bottom - 1, Cat(C((1 << inside) - 1, inside), row))
-    return first[:configuration.y_bits], last[:configuration.y_bits]
+    """First and last row of pixels that a box has in a row of regions, which is one that it meets;
+    ``top`` and ``bottom`` are the box's first row and its last one.  Nothing is added: the one is
+    the box's or a region's first, the other the box's or a region's last."""
+    inside, bits = configuration.dealt_regions.y_bits, configuration.y_bits
+    first = Mux(row == top[inside:], top, Cat(C(0, inside), row))
+    last = Mux(row == bottom[inside:], bottom, Cat(C((1 << inside) - 1, inside), row))
+    return first[:bits], last[:bits]

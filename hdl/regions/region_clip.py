@@ -74,9 +74,11 @@ class RegionClip(wiring.Component):
         m.d.comb += [
             begin.eq(region.column << inside),
             end.eq((region.column + 1) << inside),
-            x.eq(Mux(extent.first < begin, begin, extent.first)),
-            beyond.eq(Mux(extent.beyond > end, end, extent.beyond)),
-            empty.eq(extent.none | (x >= beyond)),
+            x.eq(Mux(extent.first[inside:] < region.column, begin, extent.first)),
+            beyond.eq(Mux(extent.beyond[inside:] > region.column, end, extent.beyond)),
+            # What is cut is not waited for.
+            empty.eq(extent.none | (extent.first >= extent.beyond) | (extent.beyond <= begin)
+                     | (extent.first[inside:] > region.column)),
             move.eq(~self.spans.valid | self.spans.ready),
             self.extents.ready.eq(move),
             self.empty.eq(self.extents.valid & move & empty),

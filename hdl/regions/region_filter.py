@@ -68,17 +68,18 @@ class RegionFilter:
             own.row.eq(cut(box.top, len(own.row))),
         ]
         # "large" is a word of Verilog's own.
-        filled, wide, tall, large = (Signal(name=name) for name in (
-            "filled_box", "wide_box", "tall_box", "large_box"))
-        m.d.sync += [
+        filled, wide, tall, large, taken = (Signal(name=name) for name in (
+            "filled_box", "wide_box", "tall_box", "large_box", "taken_box"))
+        m.d.comb += [
             filled.eq((triangle.left < triangle.right) & (triangle.top < triangle.bottom)),
             wide.eq(box.left != box.right),
             tall.eq(box.top != box.bottom),
-            large.eq((box.right - box.left > 1) | (box.bottom - box.top > 1)),
+            # Where the box ends, the bits beyond it are those of other regions, or of none.
+            own.asked.eq(Mux(filled, Cat(C(1), wide, tall, wide & tall), 0)),
         ]
-        # Where the box ends, the bits beyond it are those of other regions, or of none.
-        met = own.own & Cat(C(1), wide, tall, wide & tall)
-        return RegionShare(met, large, filled & (large | met.any()))
+        wider, taller = box.right - box.left > 1, box.bottom - box.top > 1
+        m.d.sync += [large.eq(wider | taller), taken.eq(filled & (wider | taller))]
+        return RegionShare(own.own, large, taken | own.some)
 
     def known(self, m: Module, share: RegionShare, kept: data.View, inputs) -> Value:
         """What goes with the outline ``kept`` into the queue, as in ``walked_outline_layout``."""

@@ -92,7 +92,8 @@ class RegionVisits(wiring.Component):
             ]
             with m.If(moves):
                 m.d.sync += visited.eq(Mux(region.last, 0, visited | (left & ~(left - 1))))
-        first, last = band_rows(region.row, triangle, configuration)
+        bottom = (triangle.bottom - 1)[:configuration.y_bits]
+        first, last = band_rows(region.row, triangle.top, bottom, configuration)
         m.d.comb += [
             visit.first_row.eq(first),
             visit.last_row.eq(last),

@@ -20,7 +20,7 @@ BOARD_NAMES = ("element", "domain", "domain-gouraud", "unit-1-port", "unit-2-por
                "unit-of-chain", "unit-of-tree", "unit-of-snoop", "chain-merge", "tree-merge",
                "snoop-merge", "frame-unit", "element-of-direct", "unit-of-direct", "direct-merge",
                "direct-merge-2", "direct-merge-element", "setup-fast", "setup-small",
-               "balancer")
+               "element-of-regions", "balancer")
 
 
 @click.command(name="boards")

@@ -82,6 +82,9 @@ class Board:
 #: Direct merges grow with the product of elements and units; of this one the parts are measured.
 DIRECT = "4x(P)D4x(M)"
 
+#: Of 128 regions, dealt out to sixteen elements.
+REGIONS = "16x(PMM)"
+
 #: The rows, by the names that ``--boards`` takes.
 BOARDS = {
     "element": Board("processing element, flat", "processing_element"),
@@ -112,6 +115,9 @@ BOARDS = {
     "setup-fast": Board("triangle set-up, fast", "triangle_setup", changes=SETUPS["fast"],
                         mapping="plain"),
     "setup-small": Board("triangle set-up, small", "triangle_setup", changes=SETUPS["small"]),
+    "element-of-regions": Board("processing element, flat, 128 regions, 16 elements",
+                                "processing_element", changes={"regions": (16, 8)},
+                                mapping="plain", cage=REGIONS),
     "balancer": Board("balancer, 128 regions, 16 elements", "balancer",
-                      changes={"regions": (16, 8), "balancer": "hardware"}, cage="16x(PMM)"),
+                      changes={"regions": (16, 8), "balancer": "hardware"}, cage=REGIONS),
 }

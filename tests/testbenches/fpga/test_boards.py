@@ -119,7 +119,7 @@ def test_machines_are_exact_for_every_triangle(placed):
     for name, machine in machines.items():
         merge = {"chain": "C", "tree": "T", "snoop": "S", "frame": "S"}.get(
             name.removeprefix("unit-of-").split("-")[0])
-        cards = ("PPPPDMMMM" if "direct" in name else "PMM" * 16 if name == "balancer" else
+        cards = ("PPPPDMMMM" if "direct" in name else "PMM" * 16 if machine.regions else
                  "PMM" if merge is None else f"PMM{merge}" * 2 + "FF" * (merge == "S"))
         assert (machine.width, machine.height, machine.cards) == (512, 512, cards)
         assert machine.order_bits == machine.node_order_bits
