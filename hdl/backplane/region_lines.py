@@ -22,6 +22,7 @@ class RegionLines(wiring.Signature):
     bank: Out(1)
         Never the table in use.
     column: Out(column_bits), row: Out(row_bits)
+        Which region.
     element: Out(element_bits), slot: Out(table_bits)
         Its processing element, and its place there: how many lower regions that one has.
     table: Out(1)

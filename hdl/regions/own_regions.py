@@ -93,7 +93,9 @@ class OwnRegions(wiring.Component):
         # The RAM's region is below or right of the place where they are not both even or both odd.
         asked = Signal(name=f"asked_{row}_{column}")
         right, down = _odd(self.column) ^ column, _odd(self.row) ^ row
-        m.d.sync += asked.eq(self.asked.bit_select(Cat(right[0], down[0]), 1))
+        upper, lower = (Mux(right[0], self.asked[place + 1], self.asked[place])
+                        for place in (0, 2))
+        m.d.sync += asked.eq(Mux(down[0], lower, upper))
         return read.data & asked
 
 

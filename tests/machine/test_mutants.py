@@ -39,7 +39,7 @@ MUTANTS_IN_RANDOM_LISTS = {
         "self.broadcast.done & (self._settle == 0)", "self._settle == 0"),
     "columns step one pixel instead of the lattice's stride": (
         "rasteriser.fragment_stepper", "FragmentStepper", ["processing_element.drawing_element"],
-        "span.x + span.stride", "span.x + 1"),
+        "1 if dealt else span.stride", "1"),
 }
 
 MUTANTS_ON_EDGES = {
@@ -114,8 +114,8 @@ MUTANTS_IN_SCANS = {
         "depth_test.one_port_lane", "OnePortLane", ["depth_test.one_port"],
         "m.d.sync += has_written.eq(0)", "pass"),
     "one row where there are two": (
-        "processing_element.broadcast_queue", "BroadcastQueue",
-        ["processing_element.drawing_element"],
+        "processing_element.share_filter", "ShareFilter",
+        ["processing_element.broadcast_queue"],
         "second_row >= kept.bottom", "second_row + 1 >= kept.bottom"),
     "scan slot ignored: the element has the port": (
         "memory_unit.one_port_memory", "OnePortMemory", ["memory_unit.memory_unit"],
@@ -168,7 +168,7 @@ MUTANTS_IN_SQUARES = {
         "self.x[:group_bits] == 0", "self.x[:group_bits + 1] == 0"),
     "addresses leave out a bit inside the square": (
         "mapping.interlace", "PixelAddress", ["rasteriser.interpolator"],
-        '_without(self.x, interlace.unit_mask("x"))', "self.x >> 1"),
+        'without(self.x, interlace.unit_mask("x"))', "self.x >> 1"),
 }
 
 

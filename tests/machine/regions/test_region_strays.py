@@ -16,7 +16,7 @@ from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.testbenches.engines.engine import Job, Reset
 from cardcage.testbenches.frames.conversation import owed_at_boot, owed_to
 from cardcage.testbenches.frames.frame_job import frame_commands
-from cardcage.testbenches.studies.stray_words import StrayWords
+from testbenches.studies.stray_words import StrayWords
 
 READ_DEPTH, READ_TABLE = (commands.command(opcode) for opcode in (
     Opcode.READ_DEPTH, Opcode.READ_TABLE))

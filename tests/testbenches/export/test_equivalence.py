@@ -23,7 +23,8 @@ SMALL = MachineConfiguration(cards="2x(PMM)", width=8, height=8, sub_bits=2, dep
 #: registers the two name differently.
 PROVED = [name for name in COMPONENTS if name not in (
     "processing_element", "direct_merge", "direct_element", "crossbar", "frame_unit",
-    "one_port_depth_test", "balancer",
+    "one_port_depth_test", "balancer", "merge_sorter", "large_visits", "region_visits",
+    "region_spans",
     "edge_setup", "plane_setup", "triangle_outline", "triangle_setup", "result_queue")]
 
 FLAT = """
