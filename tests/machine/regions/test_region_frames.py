@@ -80,7 +80,7 @@ def of_every_kind(configuration, pick, frames):
     return lists, tables, words, faults
 
 
-@pytest.mark.parametrize("stall_seed", [None, 1, 2])
+@pytest.mark.parametrize("stall_seed", [None, 1])
 @pytest.mark.parametrize("name", MODELS)
 def test_frames_by_tables_of_the_host(name, stall_seed):
     """From random memory; each table is used from its frame on, a refused one never."""
