@@ -200,12 +200,12 @@ def seen_direction(mesh: Mesh) -> tuple[float, float]:
 
 def direction_of(towards: NDArray[np.float64], upwards: Vector) -> tuple[float, float]:
     """Azimuth and elevation of a direction towards the eye, where ``upwards`` is up."""
-    right, front, up = (float(axis @ _unit(towards)) for axis in level_axes(upwards))
+    right, front, up = (float(axis @ _unit(towards)) for axis in _level_axes(upwards))
     return (math.degrees(math.atan2(right, front)),
             math.degrees(math.asin(min(1.0, max(-1.0, up)))))
 
 
-def level_axes(up: Vector) -> NDArray[np.float64]:
+def _level_axes(up: Vector) -> NDArray[np.float64]:
     """Unit vectors right, to the front, and up, of a scene with that direction up."""
     upwards = _unit(np.array(up))
     across = np.array([1.0, 0.0, 0.0]) if abs(upwards[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
@@ -216,7 +216,7 @@ def level_axes(up: Vector) -> NDArray[np.float64]:
 def seen_from(up: Vector, azimuth_degrees: float, elevation_degrees: float
                ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Unit vectors towards the eye, and up in the picture, also from straight above."""
-    right, front, upwards = level_axes(up)
+    right, front, upwards = _level_axes(up)
     azimuth, elevation = math.radians(azimuth_degrees), math.radians(elevation_degrees)
     level = right * math.sin(azimuth) + front * math.cos(azimuth)
     towards = level * math.cos(elevation) + upwards * math.sin(elevation)

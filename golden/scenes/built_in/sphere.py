@@ -31,24 +31,29 @@ def unit_sphere(depth: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         np.int64,
     )  # fmt: skip
     for _ in range(depth):
-        edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
-        edges.sort(axis=2)  # both faces of an edge name it alike, and share its middle
-        pairs, index = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-        middle = len(vertices) + index.reshape(-1, 3)
-        a, b, c = faces.T
-        ab, bc, ca = middle.T
-        faces = np.stack(
-            [
-                np.stack([a, ab, ca], axis=1),
-                np.stack([ab, b, bc], axis=1),
-                np.stack([ca, bc, c], axis=1),
-                np.stack([ab, bc, ca], axis=1),
-            ],
-            axis=1,
-        ).reshape(-1, 3)
+        pairs, faces = split_in_four(faces, len(vertices))
         new = normalised(vertices[pairs[:, 0]] + vertices[pairs[:, 1]])
         vertices = np.concatenate([vertices, new])
     return vertices, faces
+
+
+def split_in_four(
+    faces: NDArray[np.int64], vertices: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Each face (f, 3) becomes four, by the middles of its edges.
+
+    Returns the ends of every edge, int64 (e, 2), and the new faces, int64 (4 f, 3), which
+    name the middle of edge i ``vertices`` + i.  Faces that share an edge share its middle, so
+    what is closed stays so.
+    """
+    edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
+    edges.sort(axis=2)  # both faces of an edge name it alike, and share its middle
+    pairs, index = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+    a, b, c = faces.T
+    ab, bc, ca = (vertices + index.reshape(-1, 3)).T
+    split = [np.stack(corners, axis=1) for corners in (
+        (a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    return pairs, np.stack(split, axis=1).reshape(-1, 3)
 
 
 def spheres_mesh(

@@ -6,6 +6,7 @@ What Blazek's text leaves open, and was decided here, begins with "Decided:".
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...specification.card_order import MAXIMUM_NODES
@@ -135,9 +136,9 @@ def reference() -> str:
     return "\n".join(lines)
 
 
-def _described(words: object) -> list[str]:
+def _described(words: Iterable[Word]) -> list[str]:
     lines: list[str] = []
-    for word in words:  # type: ignore[attr-defined]
+    for word in words:
         lines += [f"  {word.name} {word.value.form}", f"      {word.meaning}",
                   f"      {word.example}", ""]
     return lines

@@ -73,28 +73,28 @@ class ObjectList:
 
     def display_list(self) -> DisplayList:
         """All triangles, one after another."""
-        parts = [self._triangles(number, clipped)
-                 for number, clipped in enumerate(self.clipped.tolist())]
-        none = DisplayList(
-            self.picture.width, self.picture.height, np.zeros((0, 3, 2), np.int32),
-            np.zeros((0, 3), np.int64), np.zeros((0, 3, 3), np.uint8), self.picture.sub_bits,
-            self.picture.depth_bits, self.background)
-        return none.followed_by(*parts)
-
-    def _triangles(self, number: int, clipped: bool) -> DisplayList:
-        mesh, offset = self.meshes[self.mesh[number]], self.offset[number]
-        position, depth = mesh.position + offset[:2], mesh.depth + offset[2]
-        color = modulated(self.color[number].astype(np.int64), mesh.shade.astype(np.int64))
-        if clipped:
-            return self._clipped(position, depth, color)
+        none = (np.zeros((0, 3, 2), np.int64), np.zeros((0, 3), np.int64),
+                np.zeros((0, 3, 3), np.int64))
+        position, depth, color = map(np.concatenate, zip(none, *(
+            self._triangles(number, clipped)
+            for number, clipped in enumerate(self.clipped.tolist())), strict=True))
         return DisplayList(
             self.picture.width, self.picture.height, position.astype(np.int32), depth,
             color.astype(np.uint8), self.picture.sub_bits, self.picture.depth_bits,
             self.background)
 
-    def _clipped(self, position: Int64, depth: Int64, color: Int64) -> DisplayList:
+    def _triangles(self, number: int, clipped: bool) -> tuple[Int64, Int64, Int64]:
+        """Positions, depths and colours of an object."""
+        mesh, offset = self.meshes[self.mesh[number]], self.offset[number]
+        position, depth = mesh.position + offset[:2], mesh.depth + offset[2]
+        color = modulated(self.color[number].astype(np.int64), mesh.shade.astype(np.int64))
+        return self._clipped(position, depth, color) if clipped else (position, depth, color)
+
+    def _clipped(self, position: Int64, depth: Int64,
+                 color: Int64) -> tuple[Int64, Int64, Int64]:
         pixels = position / float(1 << self.picture.sub_bits)
         corners = np.concatenate([
             pixels, (depth / max(1, self.picture.depth_limit))[..., np.newaxis],
             np.ones((*depth.shape, 1)), color.astype(np.float64)], axis=2)
-        return display_list_of_corners(corners, self.picture, background=self.background)
+        drawn = display_list_of_corners(corners, self.picture)
+        return drawn.position.astype(np.int64), drawn.depth, drawn.color.astype(np.int64)

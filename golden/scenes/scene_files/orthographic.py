@@ -12,7 +12,7 @@ from ..mesh import UP_Y, Mesh, corner_normals, dot, face_normals, normalised
 from ..quantise import PictureFormat, round_half_up
 from .description import Color, SceneDescription
 from .object_list import ObjectList, ObjectMesh
-from .placed_objects import DARKEST, PlacedObjects, rotated
+from .placed_objects import DARKEST, PlacedObjects, rotated, turned
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]
@@ -31,17 +31,16 @@ def object_list(description: SceneDescription, placed: PlacedObjects, picture: P
     """
     axes = _axes(view)
     pixels = min(picture.width, picture.height) / 2.0 * view.zoom
-    turned = [_turned(mesh, axes) for mesh in placed.meshes]
+    seen = [turned(mesh, axes) for mesh in placed.meshes]
     places = rotated(placed.position, axes)
-    depths = _depths_a_unit(turned, placed.mesh, places, picture)
-    meshes = [_quantised(mesh, pixels, depths, picture, lighting, shading) for mesh in turned]
+    depths = _depths_a_unit(seen, placed.mesh, places, picture)
+    meshes = [_quantised(mesh, pixels, depths, picture, lighting, shading) for mesh in seen]
+    if cull:
+        meshes = [mesh.facing() for mesh in meshes]
     middle = [picture.width << picture.sub_bits - 1, picture.height << picture.sub_bits - 1,
               picture.depth_limit // 2]
     offset = _steps(places, pixels, depths, picture) + middle
     objects = ObjectList(picture, background, tuple(meshes), placed.mesh, offset, placed.color)
-    if cull:
-        objects = ObjectList(picture, background, tuple(mesh.facing() for mesh in objects.meshes),
-                             objects.mesh, offset, placed.color)
     return _with_overlay(_with_stars(objects, description.percent), description.overlay)
 
 
@@ -51,11 +50,6 @@ def _axes(view: View) -> Float64:
         return np.eye(3)
     towards, up = seen_from(UP_Y, *view.direction)
     return np.stack([np.cross(up, towards), up, towards])
-
-
-def _turned(mesh: Mesh, axes: Float64) -> Mesh:
-    normals = None if mesh.normals is None else rotated(mesh.normals, axes)
-    return Mesh(rotated(mesh.vertices, axes), mesh.faces, mesh.colors, normals, mesh.smooth, UP_Y)
 
 
 def _depths_a_unit(meshes: list[Mesh], number: Int64, places: Float64,

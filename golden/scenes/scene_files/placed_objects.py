@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +63,8 @@ def placed_objects(description: SceneDescription, most_triangles: int) -> Placed
             _check_triangles(where, triangles + _fewest(definition), most_triangles)
             numbers[key] = len(meshes)
             try:
-                meshes.append(_turned(_unit_mesh(definition), definition))
+                mesh_of_kind = _scaled(_unit_mesh(definition), np.array(definition.scale))
+                meshes.append(turned(mesh_of_kind, _rotation(definition.rotation)))
             except InputError as error:
                 raise InputError(f"{where}: {error}") from None
         triangles += definition.number * meshes[numbers[key]].triangles
@@ -141,13 +142,15 @@ def _rotation(angles: Vector) -> Float64:
     return axes
 
 
-def _turned(mesh: Mesh, definition: ObjectDefinition) -> Mesh:
-    axes, scale = _rotation(definition.rotation), np.array(definition.scale)
-    normals = mesh.normals
-    if normals is not None:
-        normals = normalised(rotated(normals / scale, axes))
-    return Mesh(rotated(mesh.vertices * scale, axes), mesh.faces, mesh.colors, normals,
-                mesh.smooth, UP_Y, notes=mesh.notes)
+def turned(mesh: Mesh, axes: Float64) -> Mesh:
+    """Along the rows of ``axes``, up being y."""
+    normals = None if mesh.normals is None else rotated(mesh.normals, axes)
+    return replace(mesh, vertices=rotated(mesh.vertices, axes), normals=normals, up=UP_Y)
+
+
+def _scaled(mesh: Mesh, scale: Float64) -> Mesh:
+    normals = None if mesh.normals is None else normalised(mesh.normals / scale)
+    return replace(mesh, vertices=mesh.vertices * scale, normals=normals)
 
 
 def _places_and_colors(definition: ObjectDefinition) -> tuple[Float64, NDArray[np.uint8]]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..built_in.sphere import unit_sphere
+from ..built_in.sphere import split_in_four, unit_sphere
 from ..mesh import UP_Y, Mesh
 
 Float64 = NDArray[np.float64]
@@ -97,10 +97,7 @@ def _outward(vertices: Float64, faces: list[tuple[int, int, int]]) -> Int64:
 def _subdivided(vertices: Float64, faces: Int64, radius: Radius) -> tuple[Float64, Int64]:
     """Each triangle in four; the middle of an edge whose ends lie on the surface of revolution is
     moved out to it."""
-    edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
-    edges.sort(axis=2)  # both faces of an edge name it alike, and share its middle
-    pairs, index = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-    middle = len(vertices) + index.reshape(-1, 3)
+    pairs, faces = split_in_four(faces, len(vertices))
     new = (vertices[pairs[:, 0]] + vertices[pairs[:, 1]]) / 2.0
     if radius is not None:
         out = _on_surface(vertices, radius)
@@ -109,10 +106,7 @@ def _subdivided(vertices: Float64, faces: Int64, radius: Radius) -> tuple[Float6
         moved &= away > NEAR
         factor = np.where(moved, radius(new[:, 1]) / np.where(moved, away, 1.0), 1.0)
         new[:, [0, 2]] *= factor[:, np.newaxis]
-    (a, b, c), (ab, bc, ca) = faces.T, middle.T
-    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    split = np.stack([np.stack(part, axis=1) for part in parts], axis=1)
-    return np.concatenate([vertices, new]), split.reshape(-1, 3)
+    return np.concatenate([vertices, new]), faces
 
 
 def _on_surface(vertices: Float64, radius: Callable[[Float64], Float64]) -> NDArray[np.bool_]:

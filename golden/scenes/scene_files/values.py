@@ -80,8 +80,8 @@ def scale(low: float, high: float) -> ValueKind:
     """One number for all axes, or one for each."""
     each = vector(low, high)
 
-    def parse(text: str) -> Vector:
-        return each.parse(text if "," in text else ",".join([text] * 3))  # type: ignore[no-any-return]
+    def parse(text: str) -> Any:
+        return each.parse(text if "," in text else ",".join([text] * 3))
 
     return ValueKind("N or X,Y,Z", parse)
 
