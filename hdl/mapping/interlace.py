@@ -7,7 +7,7 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.interlace import Interlace
 
-__all__ = ["PixelAddress", "ScanAddress", "unit_number", "units_moved", "without"]
+__all__ = ["PixelAddress", "ScanAddress", "group_mask", "unit_number", "units_moved", "without"]
 
 
 def unit_number(interlace: Interlace, x: Value, y: Value) -> Value:
@@ -37,6 +37,14 @@ def units_moved(interlace: Interlace, row: Value) -> Value:
 def without(value: Value, mask: int) -> Value:
     """``value`` with the bits of ``mask`` left out, those above moved down."""
     return Cat(value[bit] for bit in range(len(value)) if not mask >> bit & 1)
+
+
+def group_mask(interlace: Interlace) -> int:
+    """The bits of the unit's number in which pixels side by side that are fetched together are the
+    same."""
+    inside = [axis == "x" and bit < interlace.group_bits
+              for axis, bit in reversed(interlace.bit_order)]
+    return sum((not bit) << place for place, bit in enumerate(inside))
 
 
 class PixelAddress(wiring.Component):
@@ -142,9 +150,7 @@ class ScanAddress(wiring.Component):
         ]
         with m.Switch(self.total):
             for interlace in self.configuration.interlaces():
-                inside = [axis == "x" and bit < interlace.group_bits
-                          for axis, bit in reversed(interlace.bit_order)]
-                groups = sum((not bit) << place for place, bit in enumerate(inside))
+                groups = group_mask(interlace)
                 group_bits = interlace.x_shift + interlace.group_bits
                 with m.Case(interlace.units):
                     m.d.comb += [

@@ -5,6 +5,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.configuration import MachineConfiguration
+from .interlace import group_mask
 from .region_address import RegionAddress
 
 __all__ = ["RegionScanAddress"]
@@ -48,9 +49,8 @@ class RegionScanAddress(wiring.Component):
         m = Module()
         m.submodules.pixel = pixel = RegionAddress(configuration=self.configuration)
         inside = self.configuration.interlace
-        # Bits of the unit's number that the pixels of a group share.
-        shared = ~sum(1 << place for place, (axis, bit) in enumerate(reversed(inside.bit_order))
-                      if axis == "x" and bit < inside.group_bits)
+        # Those of a group lie in one element, too.
+        shared = group_mask(inside) | -1 << inside.unit_bits
         m.d.comb += [
             *(getattr(pixel, name).eq(getattr(self, name))
               for name in ("x", "y", "element", "slot")),
