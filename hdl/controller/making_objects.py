@@ -74,9 +74,9 @@ class MakingObjects(OneNode):
             with m.Case(opcode):
                 self._tell(m, controller, ObjectOperation[opcode.name])
         with m.Case(Opcode.OBJECT):
-            with m.If(self._fault != 0):
+            with m.If(self._wrong != 0):
                 m.d.comb += controller.commands.ready.eq(1)
-                m.d.sync += self._refused.eq(self._fault)
+                m.d.sync += self._refused.eq(self._wrong)
                 m.next = "REFUSE_OBJECT"
             with m.Else():
                 self._tell(m, controller, ObjectOperation.OBJECT)
@@ -91,7 +91,7 @@ class MakingObjects(OneNode):
                      controller.commands.ready.eq(words.ready)]
 
     @property
-    def _fault(self):
+    def _wrong(self):
         """What is wrong with the offered object, or 0."""
         unknown = self.setup.words.payload.body.object.mesh >= self._meshes
         return Mux(self.setup.full, int(Fault.LIST_FULL), Mux(unknown, int(Fault.NO_MESH), 0))
