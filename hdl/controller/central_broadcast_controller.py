@@ -89,8 +89,8 @@ class CentralBroadcastController(wiring.Component):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self.tags = FrameTags(tag_bits=configuration.tag_bits, frame_units=configuration.snoops)
-        sets_up = configuration.setup == "hardware" and configuration.objects is None
-        self._setup = TriangleSetup(configuration=configuration) if sets_up else None
+        self._setup = (TriangleSetup(configuration=configuration)
+                       if configuration.controller_sets_up else None)
         self._nodes = merge_control(configuration)
         self.storages = self._nodes.storages  # RAMs whose contents outlast a frame
         self.packet = Signal(broadcast_layout(configuration), name="packet")

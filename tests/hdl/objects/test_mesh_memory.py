@@ -4,7 +4,7 @@ import random
 
 import pytest
 from hdl_bench.bench import Agent, simulate
-from hdl_bench.objects import object_machine
+from object_bench.objects import object_machine
 
 from cardcage.golden.specification import commands
 from cardcage.hdl.objects.mesh_memory import MeshMemory

@@ -5,8 +5,8 @@ import pytest
 from amaranth.hdl import Elaboratable, Module
 from amaranth.lib import wiring
 from hdl_bench.bench import Agent, simulate
-from hdl_bench.objects import object_commands, object_machine, random_objects
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
+from object_bench.objects import object_commands, object_machine, random_objects
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification import commands

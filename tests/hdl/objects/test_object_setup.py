@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 from hdl_bench.bench import Agent, Drive, simulate
-from hdl_bench.objects import object_commands, object_machine, object_word, random_objects
 from hdl_bench.pictures import prepare, prepared_values
 from hdl_bench.streams import Sink, Source, no_pause, pauses
+from object_bench.objects import object_commands, object_machine, object_word, random_objects
 
 from cardcage.golden.objects.making import made_at_nodes
 from cardcage.golden.organisations.organisation_of import organisation_of
