@@ -18,6 +18,7 @@ from .frames.compare import compare
 from .frames.node_counts import (
     count_differences,
     golden_traffic,
+    made_differences,
     node_figures,
     unit_differences,
 )
@@ -113,6 +114,7 @@ class RenderJob:
         if traffic is not None:  # no fault of the picture
             nodes = node_figures(configuration, display_list, simulation, traffic)
             warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
+        warnings += made_differences(configuration, display_list, simulation)
         regions = region_figures(configuration, display_list, simulation,
                                  policy=self.options.policy(configuration))
         if regions is not None:

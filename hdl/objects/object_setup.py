@@ -61,6 +61,8 @@ class ObjectSetup(wiring.Component):
     depth = 16
     #: Clocks through the queue.
     queue_latency = 2
+    #: Clocks from an object to its first triangle's vertices.
+    making = queue_latency + ObjectReader.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = c = configuration
@@ -80,7 +82,7 @@ class ObjectSetup(wiring.Component):
     @property
     def latency(self) -> int:
         """Clocks from an object to its first triangle."""
-        return self.queue_latency + ObjectReader.latency + self.setup.latency
+        return self.making + self.setup.latency
 
     @property
     def storages(self):

@@ -22,7 +22,13 @@ from ...golden.specification.card_order import (
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
-from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
+from ..frames.node_counts import (
+    NodeFigures,
+    count_differences,
+    made_differences,
+    node_figures,
+    unit_differences,
+)
 from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
@@ -204,7 +210,8 @@ class CageJob:
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *count_differences(nodes),
-             *unit_differences(simulation, golden), *_region_differences(frames.regions),
+             *unit_differences(simulation, golden),
+             *made_differences(configuration, display_list, simulation), *_region_differences(frames.regions),
              *_view_differences(views)],
             [*resolution_warnings(configuration), *simulation.notes], views, frames.regions)
 

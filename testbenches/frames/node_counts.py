@@ -9,7 +9,7 @@ from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
 from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
-from ...golden.objects.making import made_at_nodes
+from ...golden.objects.making import made_at_controller, made_at_nodes
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification.configuration import MachineConfiguration
@@ -75,6 +75,19 @@ def count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
                 ("sent", "pixels", node.sent, node.golden_sent),
                 ("made", "triangles", node.made, node.golden_made),
                 ("dropped", "triangles", node.dropped, node.golden_dropped))
+            if got != wanted]
+
+
+def made_differences(configuration: MachineConfiguration, display_list: DisplayList,
+                     simulation: Simulation) -> list[str]:
+    """The same for triangles that the controller made of objects and dropped, where it does so and
+    was asked."""
+    if configuration.objects != "controller" or not simulation.made:
+        return []
+    golden = made_at_controller(configuration, display_list)
+    return [f"the controller {verb} {got:,} triangles, golden {wanted:,}"
+            for verb, [got], wanted in (("made", simulation.made, golden.made),
+                                        ("dropped", simulation.dropped, golden.dropped))
             if got != wanted]
 
 
