@@ -18,10 +18,10 @@ from .frames.compare import compare
 from .frames.node_counts import (
     count_differences,
     golden_traffic,
-    made_differences,
     node_figures,
     unit_differences,
 )
+from .frames.object_figures import object_figures
 from .frames.region_figures import region_figures
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
@@ -114,11 +114,13 @@ class RenderJob:
         if traffic is not None:  # no fault of the picture
             nodes = node_figures(configuration, display_list, simulation, traffic)
             warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
-        warnings += made_differences(configuration, display_list, simulation)
         regions = region_figures(configuration, display_list, simulation,
                                  policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
+        objects = object_figures(configuration, display_list, simulation)
+        if objects is not None:
+            warnings += objects.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
@@ -129,6 +131,7 @@ class RenderJob:
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
             regions=regions,
+            objects=objects,
         )
 
 
