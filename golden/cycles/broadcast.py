@@ -33,8 +33,6 @@ class SetupTiming:
     ``waiting``   triangles that can wait to be set up
     ``inside``    triangles that can be in it, prepared ones that wait included
     ``leaving``   between two broadcasts of waiting ones
-    ``making``    from an object until its first triangle can be set up, where these are made of
-                  objects; a triangle follows in each clock
     """
 
     interval: int
@@ -42,7 +40,6 @@ class SetupTiming:
     waiting: int = OUTLINES_WAITING
     inside: int = 1
     leaving: int = 2
-    making: int = 0
 
 
 class SetUp:
@@ -55,7 +52,7 @@ class SetUp:
         self._timing = timing
         #: Clocks to offer each triangle together with those before it that cover no pixel.
         self._offers = iter(np.diff(sent, prepend=-1).tolist())
-        self._offered = timing.making - 1.0
+        self._offered = -1.0
         # The triangles whose places are taken, the latest last.
         self._entered = deque([NEVER] * timing.waiting, timing.waiting)
         self._sent = deque([NEVER] * timing.inside, timing.inside)

@@ -61,8 +61,6 @@ class ObjectSetup(wiring.Component):
     depth = 16
     #: Clocks through the queue.
     queue_latency = 2
-    #: Clocks from an object to its first triangle's vertices.
-    making = queue_latency + ObjectReader.latency
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = c = configuration
@@ -82,7 +80,7 @@ class ObjectSetup(wiring.Component):
     @property
     def latency(self) -> int:
         """Clocks from an object to its first triangle."""
-        return self.making + self.setup.latency
+        return self.queue_latency + ObjectReader.latency + self.setup.latency
 
     @property
     def storages(self):

@@ -16,11 +16,9 @@ def setup_timing(configuration: MachineConfiguration) -> SetupTiming | None:
     # They load Amaranth: only those whose machine has a set-up wait for it.
     from amaranth.hdl import Fragment
 
-    from ...hdl.objects.object_setup import ObjectSetup
     from ...hdl.triangle_setup.triangle_setup import TriangleSetup
 
     unit = TriangleSetup(configuration=configuration)
     Fragment.get(unit, None)  # Amaranth warns of components that are never elaborated
-    making = 0 if configuration.objects is None else ObjectSetup.making
     return SetupTiming(interval=unit.interval, latency=unit.preparation, inside=unit.depth,
-                       leaving=unit.leaving, making=making)
+                       leaving=unit.leaving)
