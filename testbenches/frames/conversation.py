@@ -133,6 +133,8 @@ def _counters(organisation: Organisation) -> list[Owed]:
         owed += [Owed(ResponseKind.SENT)] * (organisation.merges and not direct)
         if organisation.configuration.objects == "nodes":
             owed += [Owed(ResponseKind.MADE), Owed(ResponseKind.DROPPED)]
+    if organisation.configuration.objects == "controller":
+        owed += [Owed(ResponseKind.MADE), Owed(ResponseKind.DROPPED)]
     units = organisation.memory_units if direct else 0
     return owed + [Owed(ResponseKind.TAKEN), Owed(ResponseKind.FOLLOWED)] * units
 
