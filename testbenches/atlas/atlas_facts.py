@@ -21,9 +21,10 @@ def atlas_facts(atlas: Atlas) -> dict[str, Any]:
     ``differences``  lines, of points whose machine, picture or process is wrong
     ``recalled``     points that were measured before
     ``map``          of each of fastest, least_memory, least_traffic, smallest a list of objects:
-                     scene, size, elements, precision; best, kind, figure of the best cage; ahead,
-                     how many times as much the best cage of another kind has, or None; ranked, of
-                     all cages label and figure
+                     scene, size, elements, precision; best, kind, figure of the best cage; second,
+                     the best of the other kinds, ahead, how many times as much it has, or None;
+                     ranked, of all cages label and figure
+    ``winners``      of each measure: kind, and in how many cells of the map it is the best
     ``points``       a list of objects, in the order asked for:
 
         ``scene`` ``size`` ``cage`` (label) ``cards`` ``retained`` ``regions`` ``kind``
@@ -61,7 +62,8 @@ def atlas_facts(atlas: Atlas) -> dict[str, Any]:
         "map": {name: [{
             "scene": cell.scene, "size": list(cell.size), "elements": cell.elements,
             "precision": cell.precision, "best": place.best.point.cage.label,
-            "kind": place.best.kind, "figure": place.best.figure, "ahead": place.ahead,
+            "kind": place.best.kind, "figure": place.best.figure,
+            "second": place.second, "ahead": place.ahead,
             "ranked": [{"cage": each.point.cage.label, "figure": each.figure}
                        for each in place.ranked],
         } for cell, place in cells.items()] for name, cells in atlas_map(atlas).items()},

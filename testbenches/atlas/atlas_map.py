@@ -67,12 +67,19 @@ class Place:
         return self.ranked[0]
 
     @property
+    def other(self) -> Ranked | None:
+        """The best machine of another kind; None where there is none."""
+        return next((each for each in self.ranked if each.kind != self.best.kind), None)
+
+    @property
+    def second(self) -> str | None:
+        """Its kind."""
+        return None if self.other is None else self.other.kind
+
+    @property
     def ahead(self) -> float | None:
-        """How many times as much the best machine of another kind has; None where there is none."""
-        for other in self.ranked:
-            if other.kind != self.best.kind:
-                return other.figure / max(self.best.figure, 1)
-        return None
+        """How many times as much it has."""
+        return None if self.other is None else self.other.figure / max(self.best.figure, 1)
 
 
 def kind_of(cage: Cage) -> str:

@@ -32,7 +32,7 @@ def tables(atlas: Atlas) -> list[TextTable]:
         ("scene", "size", "elements", "best", MEASURES[name].unit, "next kind"),
         tuple((cell.scene, "{}x{}".format(*cell.size), str(cell.elements),
                place.best.point.cage.label, f"{place.best.figure:,}",
-               "-" if place.ahead is None else f"x {place.ahead:.2f}")
+               "-" if place.ahead is None else f"{place.second} x {place.ahead:.2f}")
               for cell, place in cells.items()))
         for name, cells in atlas_map(atlas).items()]
     checks = node_checks(atlas)

@@ -50,7 +50,7 @@ def map_figure(atlas: Atlas) -> Figure:
     cells = list(next(iter(found.values())))
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
     columns = sorted({(cell.elements, cell.size) for cell in cells})
-    figure = Figure(figsize=(3.0 + 2.3 * len(columns), 1.6 + 1.02 * max(2, len(scenes))),
+    figure = Figure(figsize=(2.6 + 2.4 * len(columns), 1.6 + 1.08 * max(2, len(scenes))),
                     layout=ConstrainedLayoutEngine(wspace=0.03, hspace=0.04))
     panels = figure.subplots(2, 2, sharex=True, sharey=True, squeeze=False)
     colors = kind_colors(atlas)
@@ -71,12 +71,12 @@ def _map(axes: Axes, places: dict[Cell, Place], scenes: Sequence[str],
         color = colors[place.best.kind]
         axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=color, edgecolor="white",
                                  linewidth=1.5))
-        ahead = "" if place.ahead is None else f"  next ×{place.ahead:.2f}"
+        ahead = "" if place.ahead is None else f"then {place.second}, ×{place.ahead:.2f}"
         ink = "white" if sum(color) < 1.45 else "black"
-        axes.text(x, y - 0.17, place.best.kind, ha="center", va="center", fontsize=8, color=ink,
+        axes.text(x, y - 0.27, place.best.kind, ha="center", va="center", fontsize=8, color=ink,
                   fontweight="bold")
-        axes.text(x, y + 0.2, f"{place.best.figure:,}{ahead}", ha="center", va="center",
-                  fontsize=7, color=ink)
+        for down, words in ((0.05, f"{place.best.figure:,}"), (0.32, ahead)):
+            axes.text(x, y + down, words, ha="center", va="center", fontsize=6.5, color=ink)
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(scenes) - 0.5, -0.5)
     axes.set_yticks(range(len(scenes)), [scene[:NAME] for scene in scenes])

@@ -120,8 +120,8 @@ class CheckedNode:
     @cached_property
     def seen(self) -> Int64:
         """The triangles that are seen in the picture that comes in."""
-        winners: Int64 = np.unique(self.coming.picture.winner).astype(np.int64)
-        return winners[winners != NO_PRIMITIVE]
+        winners = np.unique(self.coming.picture.winner)
+        return np.asarray(winners[winners != NO_PRIMITIVE], np.int64)
 
     def _cage(self, nodes: int) -> MachineConfiguration:
         """So many nodes, each as one of the large cage is."""
@@ -207,5 +207,5 @@ class CheckedNode:
         assert simulation.depth is not None
         deep = int((simulation.depth != wanted.picture.depth).sum())
         if wrong or deep:
-            raise MachineError(f"node {self.node}: {wrong:,} colours and {deep:,} depths that leave "
-                               "it are not golden's")
+            raise MachineError(f"node {self.node}: {wrong:,} colours and {deep:,} depths that "
+                               "leave it are not golden's")

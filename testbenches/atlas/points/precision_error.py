@@ -25,7 +25,8 @@ def precision_error(scene: AtlasScene, configuration: MachineConfiguration) -> d
 
     ``bound`` in LSB, 0 where the scene is exact; then the fields of ``PictureError``.
     """
-    shifts: Shifts = tuple(sorted(organisation_of(configuration).resolution.shifts.items()))
+    resolution = organisation_of(configuration).resolution
+    shifts: Shifts = ("x_shift", resolution.x_shift), ("y_shift", resolution.y_shift)
     listed = with_sub_bits(scene.load().display_list, configuration.sub_bits)
     needs = scene_needs(listed, **dict(shifts))
     bits = configuration.fraction_bits

@@ -128,10 +128,10 @@ class ClusterWorkers:
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         try:
             if self.address == LOCAL:
-                self._cluster = LocalCluster(n_workers=cores(), threads_per_worker=1,
-                                             dashboard_address=None)
-            self._client = Client(self._cluster or self.address, timeout=ANSWER_SECONDS,
-                                  set_as_default=False)
+                self._cluster = LocalCluster(  # type: ignore[no-untyped-call]
+                    n_workers=cores(), threads_per_worker=1, dashboard_address=None)
+            self._client = Client(  # type: ignore[no-untyped-call]
+                self._cluster or self.address, timeout=ANSWER_SECONDS, set_as_default=False)
             threads = sum(self._client.nthreads().values())
         except (OSError, ValueError) as error:
             self.__exit__(None, None, None)
