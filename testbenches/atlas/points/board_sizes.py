@@ -1,6 +1,6 @@
 """How large a machine's logic is, by a fit to boards that were counted.
 
-yosys takes some seconds for each board of each machine.  So ``testbenches.studies.sizes.board_cells``
+yosys takes seconds for each board of each machine.  So ``testbenches.studies.sizes.board_cells``
 has it count every kind of board once at several formats, from narrow words to wide ones, and here
 a board is as large as the straight line says that lies nearest to these, along the bits of a
 triangle as it is broadcast: its edges and interpolants are what registers, adders and multipliers
