@@ -78,6 +78,9 @@ class AtlasOptions:
                                  "have several elements each, as in 64x(16x(PM)C)")
         if self.cluster is not None and self.processes is not None:
             raise InputError("--processes: a cluster has its own; leave it out, or --cluster")
+        if self.machine.setup not in (None, "host"):
+            raise InputError("--setup: controllers with a set-up were not counted, so that nobody "
+                             "knows how large such a machine is; leave it out")
 
     def asked_cages(self) -> list[Cage]:
         """Every cage, of cages of nodes first the one that is sent its triangles in each frame."""
@@ -104,12 +107,17 @@ class AtlasOptions:
             for size in self.sizes:
                 scene = AtlasScene.of(name, size, machine)
                 for cage in self.asked_cages():
-                    found += [AtlasPoint(
-                        scene, cage, bits, machine, self.engine if self.simulate else None,
-                        self.check_node and bits == "exact" and can_check_node(cage))
-                        for bits in dict.fromkeys(self.fraction_bits)]
+                    for bits in dict.fromkeys(self.fraction_bits):
+                        check = self.check_node and bits == "exact" and can_check_node(cage)
+                        found.append(AtlasPoint(
+                            scene, cage, bits, machine, self.simulate, check,
+                            self.engine if self.simulate or check else None))
         if not found:
             raise InputError("atlas: there is nothing to measure; give a scene, a size and a cage")
+        if self.check_node and not any(point.check_node for point in found):
+            raise InputError("--check-node: there is no chain or tree with lists among the points, "
+                             "of two nodes or more than three, at exact precision; name one, such "
+                             "as --cages '64x(16x(PM)C)' --retain")
         return found
 
 

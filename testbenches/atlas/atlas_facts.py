@@ -35,8 +35,8 @@ def atlas_facts(atlas: Atlas) -> dict[str, Any]:
         ``triangles`` ``fragments``
         ``draw`` ``merge``  clocks; ``work``, of a frame of many, without the wait for a scan;
         ``scan``         clocks of a scan, ``scans``, how many whole ones a frame lasts
-        ``limit``        what takes longest: broadcast, set-up, busiest element, memory ports,
-                         waiting, merge; ``bounds``, clocks that each of them takes at least
+        ``limit``        what takes longest: broadcast, busiest element, memory ports, waiting,
+                         merge; ``bounds``, clocks that each of them takes at least
         ``memory``       bits: pictures, lists, maps, frame_units, queues, tables; ``memory_bits``
         ``cells``        flip-flops, gates and partial products of all boards, by the fit to
                          counted ones

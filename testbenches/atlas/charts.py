@@ -23,7 +23,7 @@ KIND_COLORS = ("#8fb7dd", "#8ccfae", "#f0b671", "#c3a3dc", "#e79a93", "#86cbd1",
 LIST_SHADE = 0.68
 
 LIMIT_COLORS = dict(zip(LIMITS.values(), (
-    "#5c6678", "#d98a2b", "#3b82c4", "#2a9d6f", "#c9a227", "#8a5fb0"), strict=True))
+    "#d98a2b", "#3b82c4", "#2a9d6f", "#c9a227", "#8a5fb0"), strict=True))
 
 #: More rows of limits than that would be no picture any more.
 MOST_ROWS = 60

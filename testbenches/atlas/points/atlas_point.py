@@ -24,16 +24,18 @@ class AtlasPoint:
     ``cage``           its cards, and how it is used: lists, regions
     ``fraction_bits``  of depth and colour
     ``options``        of the machine, whatever the cage
-    ``engine``         simulates it in RTL; None asks the models alone
+    ``simulate``       in RTL as well; else the models alone are asked
     ``check_node``     simulate one of its nodes, with what the model says of its ports
+    ``engine``         that simulates; None where nothing is simulated
     """
 
     scene: AtlasScene
     cage: Cage
     fraction_bits: FractionBits
     options: MachineOptions
-    engine: str | None = None
+    simulate: bool = False
     check_node: bool = False
+    engine: str | None = None
 
     @property
     def label(self) -> str:

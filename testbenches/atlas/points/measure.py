@@ -34,7 +34,7 @@ class Batch:
 def batches(points: Iterable[AtlasPoint], release: str) -> list[Batch]:
     """Points that follow one another together, where only one works them out."""
     return [Batch(tuple(some), release) for _, some in groupby(
-        points, lambda point: (point.scene, point.cage, point.engine))]
+        points, lambda point: (point.scene, point.cage))]
 
 
 def measure(batch: Batch) -> list[Outcome]:
@@ -58,7 +58,7 @@ def _measured(point: AtlasPoint, works: dict[MachineConfiguration, Work]) -> Out
             works[same] = work_of(configuration, point.scene.load().display_list,
                                   point.cage.retained)
         figures = model_figures(point, configuration, works[same])
-        if point.engine is not None:
+        if point.simulate:
             figures = rtl_figures(point, figures)
         if point.check_node:
             figures = figures | {"node_check": node_check(point, configuration)}

@@ -30,7 +30,7 @@ FRAME_COMMANDS, LIST_COMMANDS = 2, 1
 WAITING = 1.25
 
 #: What can limit a point, by the names that ``CyclePrediction.bounds`` has for them.
-LIMITS = {"broadcast": "broadcast", "set-up": "set-up", "busiest element": "busiest element",
+LIMITS = {"broadcast": "broadcast", "busiest element": "busiest element",
           "busiest port": "memory ports", "waiting": "waiting", "merge": "merge"}
 
 

@@ -40,7 +40,7 @@ from ....golden.specification.display_list import DisplayList
 from ....golden.specification.errors import InputError
 from ....golden.specification.picture import NO_PRIMITIVE
 from ...comparison.cage import Cage
-from ...engines.choose_engine import AUTO, make_engine
+from ...engines.choose_engine import make_engine
 from ...engines.engine import Job
 from ...frames.conversation import responses_owed
 from ...frames.responses import Answers, MachineError, Simulation
@@ -48,6 +48,9 @@ from ...frames.simulation import engine_errors
 from .atlas_point import AtlasPoint
 
 Int64 = NDArray[np.int64]
+
+#: Nodes that stand for the large cage.
+STAND_IN = 2
 
 
 def can_check_node(cage: Cage) -> bool:
@@ -67,8 +70,8 @@ def node_check(point: AtlasPoint, configuration: MachineConfiguration) -> dict[s
     if not can_check_node(point.cage):
         raise InputError(f"--check-node: {point.cage.label} is no chain or tree of two nodes or "
                          "more than three with lists; take one, or leave it out")
-    return CheckedNode(configuration, point.scene.load().display_list,
-                       point.engine or AUTO).figures()
+    assert point.engine is not None
+    return CheckedNode(configuration, point.scene.load().display_list, point.engine).figures()
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +167,7 @@ class CheckedNode:
         """Of the checked node, ``model`` and ``rtl`` each: ``fragments``, ``clocks`` of its busiest
         element, ``pixels_in`` at its merge card, and in a tree ``merge``, the clocks to receive
         them."""
-        stand_in, node = self._cage(2), self.node
+        stand_in, node = self._cage(STAND_IN), self.node
         simulation = self._simulated(stand_in)
         own = self.pictures[node]
         lower, higher = (self.coming, own) if self.place else (own, self.coming)

@@ -24,14 +24,14 @@ from ...atlas.atlas import (
 from ...atlas.atlas_facts import atlas_facts
 from ...atlas.atlas_table import headline, tables
 from ...engines.choose_engine import AUTO, ENGINES
-from ...machine_options import SETUPS, MachineOptions
+from ...machine_options import MachineOptions
 from ...support.progress import points_bar
 from ...support.text_table import print_tables, tables_text
 from ..command_group import EXIT_DIFFERENT, warn
 from ..command_options import FRACTION_BITS, PACKET, Several, Size, view_options
 
-_OF_MACHINE = ("memory_ports", "clocks_per_pixel", "setup", "packet", "view", "zoom", "background",
-               "cull", "light")
+_OF_MACHINE = ("memory_ports", "clocks_per_pixel", "packet", "view", "zoom", "background", "cull",
+               "light")
 
 
 @click.command(name="atlas")
@@ -54,8 +54,6 @@ _OF_MACHINE = ("memory_ports", "clocks_per_pixel", "setup", "packet", "view", "z
               help="Ports of each memory unit's RAM.")
 @click.option("--clocks-per-pixel", type=click.IntRange(*RANGES["clocks_per_pixel"]), metavar="N",
               help="Clocks a pixel lasts on the video output.  [default: 2]")
-@click.option("--setup", type=click.Choice(list(SETUPS)), help="Who sets triangles up.  "
-              "[default: host]")
 @click.option("--packet", type=PACKET, metavar=PACKET.name, help="Which triangles of the list go "
               "to one node.  [default: work]")
 @click.option("--simulate", is_flag=True, help="Simulate every point in RTL as well, and compare "

@@ -88,6 +88,7 @@ def test_nobody_there_is_one_line(monkeypatch):
     monkeypatch.setattr("cardcage.testbenches.atlas.running.workers.ANSWER_SECONDS", 1)
     sweep = Sweep(SMALL.points()[:1], workers_for("tcp://127.0.0.1:1", None))
     monkeypatch.setattr("cardcage.testbenches.atlas.running.sweep.recall", lambda parts: None)
-    with pytest.raises(InputError, match="--cluster: tcp://127.0.0.1:1 does not answer") as error:
+    with pytest.raises(InputError, match="does not answer") as error:
         sweep.run()
+    assert str(error.value).startswith("--cluster: tcp://127.0.0.1:1 does not answer")
     assert "\n" not in str(error.value)
