@@ -61,7 +61,12 @@ def _cells(configuration: MachineConfiguration, board: str) -> int:
                       retained=configuration.list_words > 0, ports=configuration.memory_ports)
     size = board_size(board, triangle_bits(configuration),
                       configuration.processing_elements * configuration.units)
-    base, slope = _lines().get(kind,(1,1))
+    return cells_of_board(kind, size)
+
+
+def cells_of_board(kind: Kind, size: int) -> int:
+    """On the line of its kind; ``size`` is that of ``board_size``."""
+    base, slope = _lines()[kind]
     return max(1, round(base + slope * size))
 
 
