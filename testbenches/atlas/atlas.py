@@ -33,7 +33,7 @@ DEFAULT_NODES = (4, 16)
 
 DEFAULT_SIZES = ((64, 64), (256, 256))
 
-#: None, those that hold depths to two LSB, and as many as each scene needs.
+#: None, two, and as many as each scene needs.
 DEFAULT_FRACTION_BITS: tuple[FractionBits, ...] = (0, 2, "exact")
 
 #: Ports of a memory unit's RAM: as FPGAs have them, and what the cycle model knows to the clock.

@@ -20,6 +20,7 @@ from .atlas_table import headline, node_checks, tables
 ATLAS_FILES = ("atlas.html", "atlas.json", "atlas.csv", "atlas.png")
 
 PICTURE_DPI = 110
+PICTURE_COLORS = 64
 
 
 def write_atlas(atlas: Atlas, folder: Path) -> None:
@@ -51,6 +52,8 @@ def _charts(atlas: Atlas, facts: dict[str, Any]) -> dict[str, str]:
 
 def _drawn(atlas: Atlas) -> dict[str, str]:
     # They take a second to load.
+    from PIL import Image
+
     from .charts import error_figure, limits_figure, map_figure
 
     with chart_style():
@@ -60,7 +63,8 @@ def _drawn(atlas: Atlas) -> dict[str, str]:
         error = error_figure(atlas)
         if error is not None:
             found["error"] = svg_element(error, "Speed against error")
-        picture = io.BytesIO()
-        map_figure(atlas).savefig(picture, format="png", dpi=PICTURE_DPI, facecolor="white",
-                                  metadata={"Software": None})
+        drawn, picture = io.BytesIO(), io.BytesIO()
+        map_figure(atlas).savefig(drawn, format="png", dpi=PICTURE_DPI, facecolor="white")
+    # Few colours: a quarter of the bytes.
+    Image.open(drawn).convert("RGB").quantize(PICTURE_COLORS).save(picture, "PNG", optimize=True)
     return found | {"png": base64.b64encode(picture.getvalue()).decode()}

@@ -43,8 +43,8 @@ def measure(batch: Batch) -> list[Outcome]:
     Raises ``InputError`` in a process that has another release of the package.
     """
     if package_hash() != batch.release:
-        raise InputError("--cluster: a worker has another release of Cardcage; install on all "
-                         "machines the same")
+        raise InputError("--cluster: a worker has another release of Cardcage, or its sources were "
+                         "changed meanwhile; install on all machines the same")
     works: dict[MachineConfiguration, Work] = {}
     return [_measured(point, works) for point in batch.points]
 

@@ -93,12 +93,17 @@ class CheckedNode:
 
     @cached_property
     def node(self) -> int:
-        """The busiest one that can stand beside one other node."""
+        """Of those that can stand beside one other node the one that draws longest: in a chain the
+        whole frame waits for it."""
         nodes, chained = self.configuration.nodes, self.configuration.scans_rank
-        drawn = [self._fragments(node) for node in range(nodes)]
         able = [node for node in range(nodes) if (node > 0 if chained else
                                                   node + 1 < nodes and node % 4 == 2 % nodes)]
-        return max(able, key=drawn.__getitem__)
+        return max(able, key=self._clocks)
+
+    def _clocks(self, node: int) -> float:
+        """That the cycle model has for a node alone."""
+        return predict_cycles(self._cage(1, node), self.listed.chosen(self._own(node)),
+                              retained=True).cycles
 
     def _own(self, node: int) -> Int64:
         """The triangles of a node."""
@@ -126,12 +131,13 @@ class CheckedNode:
         winners = np.unique(self.coming.picture.winner)
         return np.asarray(winners[winners != NO_PRIMITIVE], np.int64)
 
-    def _cage(self, nodes: int) -> MachineConfiguration:
-        """So many nodes, each as one of the large cage is."""
+    def _cage(self, nodes: int, node: int, words: int = 0) -> MachineConfiguration:
+        """So many nodes, each as that one of the large cage is; their lists hold ``words``, if
+        those are more."""
         configuration = self.configuration
-        cards = f"{nodes}x({configuration.node_cards[self.node]}{configuration.merge})"
-        words = max(len(self.seen), len(self._own(self.node)), configuration.list_words)
-        return replace(configuration, cards=cards, packet="contiguous", list_words=words)
+        cards = f"{nodes}x({configuration.node_cards[node]}{configuration.merge})"
+        return replace(configuration, cards=cards, packet="contiguous",
+                       list_words=max(words, configuration.list_words))
 
     def _simulated(self, stand_in: MachineConfiguration) -> Simulation:
         words = self._commands(stand_in)
@@ -167,13 +173,13 @@ class CheckedNode:
         """Of the checked node, ``model`` and ``rtl`` each: ``fragments``, ``clocks`` of its busiest
         element, ``pixels_in`` at its merge card, and in a tree ``merge``, the clocks to receive
         them."""
-        stand_in, node = self._cage(STAND_IN), self.node
+        node = self.node
+        stand_in = self._cage(STAND_IN, node, len(self.seen))
         simulation = self._simulated(stand_in)
         own = self.pictures[node]
         lower, higher = (self.coming, own) if self.place else (own, self.coming)
         self._compare(simulation, stand_in, nearer(lower, higher))
         work = [each for each in simulation.work if each.node == self.place]
-        alone = predict_cycles(self._cage(1), self.listed.chosen(self._own(node)), retained=True)
         counts = {
             "fragments": (self._fragments(node), sum(each.fragments for each in work)),
             "pixels_in": (self._pixels_in(stand_in), simulation.sent[1 - self.place]),
@@ -182,7 +188,8 @@ class CheckedNode:
             if model != rtl:
                 raise MachineError(f"node {node}: {rtl:,} {name.replace('_', ' ')}, by the model "
                                    f"{model:,}")
-        both = counts | {"clocks": (round(alone.cycles), max(each.busy_cycles for each in work))}
+        both = counts | {"clocks": (round(self._clocks(node)),
+                                    max(each.busy_cycles for each in work))}
         if not self.place:
             assert simulation.merge_cycles is not None
             send = TreeSend(0, 1, 0, self.coming.drawn, higher_is_nearer(own, self.coming))
