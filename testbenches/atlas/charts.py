@@ -10,7 +10,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
 from .atlas import Atlas
 from .atlas_map import MEASURES, Cell, Place, atlas_map, finest, kind_of, kinds
@@ -101,7 +101,7 @@ def limits_figure(atlas: Atlas) -> Figure:
         x, y = columns.index((point.scene.name, point.scene.size)), cages.index(point.cage.label)
         axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, edgecolor="white",
                                  facecolor=LIMIT_COLORS[figures["limit"]]))
-        axes.text(x, y, f"{figures['work']:,}" + (" ·" if figures["scans"] == 1 else ""),
+        axes.text(x, y, f"{figures['work']:,}" + (" •" if figures["scans"] == 1 else ""),
                   ha="center", va="center", fontsize=7, color="white")
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(cages) - 0.5, -0.5)
@@ -161,6 +161,8 @@ def _curve(axes: Axes, points: Sequence[tuple[AtlasPoint, Figures]], color: Any,
               marker="o", markersize=3.5, linewidth=1.3, label=kind,
               linestyle="--" if kind.endswith(", lists") else "-")
     axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.yaxis.set_minor_locator(NullLocator())
     axes.grid(alpha=0.25)
     axes.spines[["top", "right"]].set_visible(False)
