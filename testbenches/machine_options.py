@@ -70,9 +70,10 @@ class MachineOptions:
     ``regions``           columns and rows of the regions of the screen that are dealt out to
                           processing elements; None interlaces pixels
     ``slots``             regions that each of them has room for
-    ``balance``           by which the next table is made: ``static`` nothing, ``triangles`` or
-                          ``clocks`` of each region in the last picture, which is what the machine
-                          counts; ``learnt``, clocks that the host foretells from the last three
+    ``balance``           by which the next table is made: ``static`` and ``runs`` nothing,
+                          ``triangles`` or ``clocks`` of each region in the last picture, which is
+                          what the machine counts; ``learnt``, clocks that the host foretells from
+                          the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
 
     How a mesh is looked at; a display list can be asked for none of it:
