@@ -21,7 +21,7 @@ WINGS = {
     "hdl": (
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
         "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
-        "balancing", "controller", "video", "nodes", "snooping", "direct", "machine",
+        "balancing", "controller", "video", "nodes", "snooping", "direct", "forwarding", "machine",
         "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
