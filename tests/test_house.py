@@ -15,7 +15,7 @@ ROOT = Path(__file__).parent.parent
 #: The wings of each folder, from the bottom to the top: each imports only from those before it.
 WINGS = {
     "golden": (
-        "specification", "organisations", "scenes", "reference", "balancing", "merging",
+        "specification", "organisations", "scenes", "reference", "objects", "balancing", "merging",
         "planning", "cycles", "hard_cases", "scene_argument", "scene_display_list",
         "precision"),
     "hdl": (

@@ -15,13 +15,12 @@ from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import (
     MAXIMUM_PACKET,
-    MAXIMUM_WORDS,
     ONE_PACKET_EACH,
     QUEUE_RANGE,
     RANGES,
 )
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
-from ...golden.specification.ranges import MAXIMUM_SIZE
+from ...golden.specification.ranges import MAXIMUM_SIZE, MAXIMUM_WORDS
 from ...golden.specification.regions import MAXIMUM_REGIONS, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES

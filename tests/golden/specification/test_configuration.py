@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from cardcage.golden.planning.presets import PRESETS
-from cardcage.golden.specification.configuration import MAXIMUM_WORDS, MachineConfiguration
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
+from cardcage.golden.specification.ranges import MAXIMUM_WORDS
 from cardcage.golden.specification.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
 
 GOOD = {"cards": "PMMPMM", "width": 16, "height": 8}
