@@ -5,9 +5,17 @@ from typing import NamedTuple
 from amaranth.hdl import *
 from amaranth.lib import data
 
+from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 
-__all__ = ["Routes", "reach_layout", "reaching_object_layout", "routes", "run_layout"]
+__all__ = ["Routes", "object_bits", "reach_layout", "reaching_object_layout", "routes",
+           "run_layout"]
+
+
+def object_bits(configuration: MachineConfiguration) -> int:
+    """Bits of what of an object is passed on: all but the element that is given it, which comes
+    last in its command."""
+    return commands.layout_bits(commands.object_layout(configuration)) - configuration.element_bits
 
 
 def reach_layout(configuration: MachineConfiguration) -> data.StructLayout:

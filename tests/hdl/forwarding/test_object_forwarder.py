@@ -4,7 +4,7 @@ import random
 
 import pytest
 from hdl_bench.bench import rejects
-from hdl_bench.forwarding import check_row, some_reaches
+from region_bench.forwarding import check_row, some_reaches
 
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.forwarding.object_forwarder import ObjectForwarder

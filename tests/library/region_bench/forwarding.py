@@ -6,15 +6,14 @@ import numpy as np
 from amaranth.hdl import Module
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
+from hdl_bench.bench import Agent, Watch, simulate
+from hdl_bench.streams import Sink, Source, no_pause, once, pauses
 
-from cardcage.golden.balancing.forwarded_objects import ForwardedObjects
+from cardcage.golden.objects.forwarded_objects import ForwardedObjects
 from cardcage.golden.organisations.region_table import runs_table
 from cardcage.hdl.backplane.region_lines import RegionLines
 from cardcage.hdl.forwarding.object_forwarder import ObjectForwarder
 from cardcage.hdl.forwarding.reach import reaching_object_layout
-
-from .bench import Agent, Watch, simulate
-from .streams import Sink, Source, no_pause, once, pauses
 
 OBJECT_BITS = 12
 
@@ -112,7 +111,8 @@ def check_row(configuration, sources, reaches, *, seed=None, slow=None, limit=20
     hosts = [Source(dut.host[element], items[element], pace((seed, element, "host")))
              for element in range(elements)]
     sinks = [Sink(dut.drawn[element], int(golden.drawn[:, element].sum()),
-                  once((slow or {}).get(element, 0), pace((seed, element, "drawn")))) for element in range(elements)]
+                  once((slow or {}).get(element, 0), pace((seed, element, "drawn"))))
+             for element in range(elements)]
     passed = {"left": [0] * elements, "right": [0] * elements}
     owed = 0
 
