@@ -19,10 +19,10 @@ WINGS = {
         "planning", "cycles", "hard_cases", "scene_argument", "scene_display_list",
         "precision"),
     "hdl": (
-        "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
-        "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
-        "balancing", "controller", "video", "nodes", "snooping", "direct", "forwarding", "machine",
-        "components"),
+        "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "objects",
+        "rasteriser", "regions", "depth_test", "merging", "memory_unit", "processing_element",
+        "lines_to_all", "balancing", "controller", "video", "nodes", "snooping", "direct",
+        "forwarding", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
         "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",

@@ -38,6 +38,11 @@ class MakingFields(Widths):
         return self.setup == "hardware" and self.objects not in ("nodes", "elements")
 
     @property
+    def reports_full(self) -> bool:
+        """Boards say when a list or a mesh finds no room."""
+        return bool(self.list_words) or self.objects in ("nodes", "elements")
+
+    @property
     def mesh_bits(self) -> int:
         """Bits of the number of a mesh, or of one more than there can be."""
         return self.meshes.bit_length()
