@@ -209,3 +209,5 @@ class Machine(wiring.Component):
                             table=controller.shown_table)
         if self.configuration.forwards_objects:
             connect_forwarding(m, self.processing_elements)
+            fixed.d.comb += controller.lists_full.eq(
+                Cat(element.lists_full for element in self.processing_elements).any())

@@ -31,7 +31,7 @@ class ForwardingElement(ProcessingElement):
     from_left, from_right: In(stream of reaching_object_layout)
     to_left, to_right: Out(stream of reaching_object_layout)
         Objects of the neighbouring processing elements (``ObjectForwarder``).
-    meshes_full: Out(1)
+    lists_full: Out(1)
         A mesh found no room since all were cleared.
 
     Blazek 1991, chapter V, node initiated with object forwarding.
@@ -48,7 +48,7 @@ class ForwardingElement(ProcessingElement):
         passed = stream.Signature(reaching_object_layout(configuration,
                                                          object_bits(configuration)))
         return {"from_left": In(passed), "from_right": In(passed),
-                "to_left": Out(passed), "to_right": Out(passed), "meshes_full": Out(1)}
+                "to_left": Out(passed), "to_right": Out(passed), "lists_full": Out(1)}
 
     @property
     def storages(self) -> list[memory.Memory]:
@@ -72,7 +72,7 @@ class ForwardingElement(ProcessingElement):
             gate.total.eq(self.total),
             gate.element.eq(self.left.id >> self.configuration.share_bits),
             gate.start.eq(control.frame_start),
-            self.meshes_full.eq(gate.full),
+            self.lists_full.eq(gate.full),
             *(getattr(control, name).eq(getattr(gate, name))
               for name in ("made", "dropped", "forwarded")),
         ]

@@ -6,7 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 from hdl_bench.bench import simulate
-from hdl_bench.objects import object_commands, object_machine, random_objects
+from object_bench.objects import object_commands, object_machine, random_objects
 from region_bench.forwarding import Deal, Waiting
 from region_bench.gates import ElementQueue, GateController, GateRow, forwarded
 

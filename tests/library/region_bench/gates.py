@@ -6,7 +6,7 @@ from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from hdl_bench.bench import Agent
-from hdl_bench.objects import object_word
+from object_bench.objects import object_word
 
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import ResponseKind
