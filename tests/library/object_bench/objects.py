@@ -26,18 +26,22 @@ def object_machine(cards="2x(PMC)", size=(16, 12), **changes):
            "objects": "nodes", "mesh_triangles": 40, "meshes": 6} | changes)
 
 
-def random_objects(configuration, objects, seed, triangles=(0, 1, 2, 3, 7), *, wide=False):
+def random_objects(configuration, objects, seed, triangles=(0, 1, 2, 3, 7), *, wide=False,
+                   flat=False):
     """An ``ObjectList`` of meshes with so many triangles each; objects lie all over the screen and
-    around it.  ``wide``: there is one mesh more, which reaches out of the guard band."""
+    around it.  ``wide``: there is one mesh more, which reaches out of the guard band.
+    ``flat``: each triangle has one colour."""
     pick = np.random.default_rng(seed)
     picture = PictureFormat(configuration.width, configuration.height, configuration.sub_bits,
                             configuration.depth_bits)
     unit = 1 << configuration.sub_bits
     size = np.array([configuration.width, configuration.height]) * unit
+    corners = 1 if flat else 3
     meshes = tuple(ObjectMesh(
         pick.integers(-4 * unit, 4 * unit, (count, 3, 2)),
         pick.integers(-200, 200, (count, 3)),
-        pick.integers(0, 256, (count, 3, 3)).astype(np.uint8)) for count in triangles)
+        pick.integers(0, 256, (count, corners, 3)).repeat(3 // corners, axis=1).astype(np.uint8))
+        for count in triangles)
     offset = np.concatenate([pick.integers(-2 * unit, size + 2 * unit, (objects, 2)),
                              pick.integers(200, picture.depth_limit - 200, (objects, 1))], axis=1)
     if wide:
