@@ -33,8 +33,8 @@ ORDER = list(WINGS)
 
 #: What ``hdl`` may import of ``golden``: the numbers and words that both must agree on.
 SHARED_WITH_HDL = {f"golden.specification.{name}" for name in (
-    "activity", "card_order", "commands", "configuration", "interlace", "queues", "ranges",
-    "regions")}
+    "activity", "card_order", "commands", "configuration", "fields.making", "interlace", "queues",
+    "ranges", "regions")}
 
 MOST_FILES = 16
 MOST_LINES = 400

@@ -58,6 +58,11 @@ class ObjectShares(Shares):
         return Shares(self.nodes, count, self.packet, work)
 
     @property
+    def items(self) -> int:
+        """Objects."""
+        return len(self.object_triangles)
+
+    @property
     def packet_triangles(self) -> int:
         raise NotImplementedError("objects have any number of triangles")
 

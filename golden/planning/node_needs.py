@@ -82,7 +82,7 @@ class NodeNeeds:
             return node_bits
         most = MAXIMUM_ORDER_BITS - node_bits
         if shares.order_bits > most:
-            fewest = -(-shares.triangles // (shares.nodes << most))
+            fewest = -(-shares.items // (shares.nodes << most))
             raise InputError(
                 f"packet: {shares.packet} makes {shares.rounds:,} rounds, at most "
                 f"{1 << most:,} keep ties between nodes in order; take {fewest} at "

@@ -23,8 +23,10 @@ class ObjectGate(NodeGate):
     Latency: ``ObjectSetup.latency`` from the strobe of an object to that of its first triangle.
     Throughput: that of ``TriangleSetup``.
 
-    Members, besides those of ``NodeGate``
+    Members
     -------
+    number, broadcast, own
+        As of ``NodeGate``.
     total: In(id_bits)
         Memory units of the node.
     lists_full: Out(1)
