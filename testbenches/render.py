@@ -15,6 +15,7 @@ from ..golden.specification.errors import InputError
 from .engines.choose_engine import AUTO
 from .engines.engine import Progress
 from .frames.compare import compare
+from .frames.element_counts import element_differences
 from .frames.node_counts import (
     count_differences,
     golden_traffic,
@@ -118,6 +119,7 @@ class RenderJob:
                                  policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
+        warnings += element_differences(configuration, display_list, simulation)
         return Rendering(
             scene=self.scene,
             configuration=configuration,

@@ -1,5 +1,7 @@
 """The processing element that makes triangles of objects, and passes these on to its neighbours."""
 
+from itertools import pairwise
+
 from amaranth.hdl import *
 from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -82,7 +84,7 @@ class ForwardingElement(ProcessingElement):
 def connect_forwarding(m: Module, elements: list[ForwardingElement]) -> None:
     """The channels between neighbours; beyond the first element and the last one there is
     nobody."""
-    for number, (one, other) in enumerate(zip(elements, elements[1:], strict=False)):
+    for number, (one, other) in enumerate(pairwise(elements)):
         part = wires(m, f"channel_{number}_wires")
         wiring.connect(part, one.to_right, other.from_left)
         wiring.connect(part, other.to_left, one.from_right)

@@ -29,7 +29,7 @@ def test_frames_of_objects(name):
     the end one of triangles that the host has prepared."""
     configuration = machine(name)
     drawn = scenes(configuration)
-    lists = [*drawn.values(), *drawn.values()][::2] + [drawn["anywhere"]]
+    lists = [*[*drawn.values(), *drawn.values()][::2], drawn["anywhere"]]
     some = lists[0]
     load = [CLEAR, *mesh_words(configuration, some.objects)]
     prepared = frame_commands(configuration, some, configuration.fraction_bits)
