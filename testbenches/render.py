@@ -15,13 +15,13 @@ from ..golden.specification.errors import InputError
 from .engines.choose_engine import AUTO
 from .engines.engine import Progress
 from .frames.compare import compare
-from .frames.element_counts import element_differences
 from .frames.node_counts import (
     count_differences,
     golden_traffic,
     node_figures,
     unit_differences,
 )
+from .frames.object_figures import object_figures
 from .frames.region_figures import region_figures, sent_table
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
@@ -119,7 +119,9 @@ class RenderJob:
                                  policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
-        warnings += element_differences(configuration, display_list, simulation)
+        objects = object_figures(configuration, display_list, simulation)
+        if objects is not None:
+            warnings += objects.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
@@ -130,6 +132,7 @@ class RenderJob:
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
             regions=regions,
+            objects=objects,
         )
 
 
