@@ -28,8 +28,10 @@ class ForwardingElement(ProcessingElement):
     Objects come in any order, so every pixel keeps its object's number below its depth, and the
     depth test compares both.
 
-    Members: those of ``ProcessingElement``, and
+    Besides the members of ``ProcessingElement`` it has these.
 
+    Members
+    -------
     from_left, from_right: In(stream of reaching_object_layout)
     to_left, to_right: Out(stream of reaching_object_layout)
         Objects of the neighbouring processing elements (``ObjectForwarder``).
