@@ -32,6 +32,8 @@ REACH_LATENCY = 3
 #: Clocks until an object is at the end of a queue that is empty, and from there to each output.
 TO_HEAD = 1
 TO_OUTPUT = 1
+#: From when a triangle is sent that is in none of the element's regions until that is done with it.
+PASSED_OVER = 3
 
 
 class PassedObjects:
@@ -81,6 +83,7 @@ class ForwardedRun:
         self._passing = {step: [PassedObjects(OBJECTS_PASSING) for _ in range(elements)]
                          for step in (-1, 1)}
         self._sent = -1.0
+        self._passed_over = NEVER  # the last triangle so far, were it in nobody's regions
         self.finished: list[float] = []
         self.commands = 0
         for number in shares.host_order.tolist():
@@ -89,7 +92,7 @@ class ForwardedRun:
             else:
                 self._send(number)
             done = max(queue.finished for queue in self._queues)
-            self.finished.append(max(done, self._sent + 1))
+            self.finished.append(max(done, self._passed_over, self._sent + 1))
         own = self._drawn | self._clipped[:, np.newaxis]
         kept = np.diff(self._begins)
         self.kept = np.array([int(kept[each].sum()) for each in own.T])
@@ -148,7 +151,9 @@ class ForwardedRun:
     def _make(self, element: int, triangle: int, place: int) -> None:
         """A triangle, that an element draws if it is in its regions."""
         setup, queue = self._setups[element], self._queues[element]
-        setup.leaves(queue.send(setup.arrival(place)))
+        sent = queue.send(setup.arrival(place))
+        setup.leaves(sent)
+        self._passed_over = max(self._passed_over, sent + PASSED_OVER)
         cost = self._work[triangle].get(element)
         if cost is not None:
             queue.take(0, *cost)
