@@ -22,6 +22,7 @@ from ..golden.specification.configuration import (
     Queue,
 )
 from ..golden.specification.errors import InputError
+from ..golden.specification.fields.making import Objects
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
 from ..golden.specification.regions import Balancer
 
@@ -59,10 +60,12 @@ class MachineOptions:
     ``memory_ports``      of each memory unit
     ``block``             side of the squares of pixels that processing elements interlace in
     ``skew``              units of a processing element alternate along its rows, too
+    ``lines``             processing elements have whole lines in turn
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     ``packet``            triangles of a packet for each node, ``"contiguous"`` or ``"work"``, which
-                          cages of nodes have where nothing is said
+                          cages of nodes have where nothing is said; where the machine makes
+                          triangles of objects, objects; also for elements that pass them on
     ``queue``             fragments that can wait from each processing element to each memory unit,
                           or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
@@ -70,10 +73,16 @@ class MachineOptions:
     ``regions``           columns and rows of the regions of the screen that are dealt out to
                           processing elements; None interlaces pixels
     ``slots``             regions that each of them has room for
-    ``balance``           by which the next table is made: ``static`` nothing, ``triangles`` or
-                          ``clocks`` of each region in the last picture, which is what the machine
-                          counts; ``learnt``, clocks that the host foretells from the last three
+    ``balance``           by which the next table is made: ``static`` and ``runs`` nothing,
+                          ``triangles`` or ``clocks`` of each region in the last picture, which is
+                          what the machine counts; ``learnt``, clocks that the host foretells from
+                          the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
+
+    ``objects``           where the machine makes the triangles of a scene's objects: ``nodes``,
+                          ``controller`` or ``elements``; None has the host send triangles
+    ``mesh_triangles``    triangles that a mesh memory holds, else as many as the scene needs
+    ``meshes``            meshes that it can tell apart, likewise
 
     How a mesh is looked at; a display list can be asked for none of it:
 
@@ -95,6 +104,7 @@ class MachineOptions:
     memory_ports: int | None = None
     block: int | None = None
     skew: bool | None = None
+    lines: bool | None = None
     setup: SetupChoice | None = None
     packet: Packet | None = None
     queue: Queue | None = None
@@ -104,6 +114,9 @@ class MachineOptions:
     slots: int | None = None
     balance: Policy | None = None
     balancer: Balancer | None = None
+    objects: Objects | None = None
+    mesh_triangles: int | None = None
+    meshes: int | None = None
     view: tuple[float, float] | None = None
     zoom: float | None = None
     background: tuple[int, int, int] | None = None
@@ -129,8 +142,12 @@ class MachineOptions:
         self._check_regions()
         if self.balance is not None:
             settled["balance"] = counted_by(self.balance)
+        elif self.objects == "elements" and self.regions is not None:
+            settled["balance"] = "static"  # each element keeps its run of regions
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
+        if self.objects is not None:  # nobody else can set up what the machine makes
+            settled |= SETUPS["fast"]
         if self.setup is not None:
             settled |= SETUPS[self.setup]
         if self.shading != "auto":
@@ -145,7 +162,7 @@ class MachineOptions:
         if self.retain and merge is None:
             raise InputError(f"--retain: {cards} has no merge card, and so no list memory; end its "
                              "nodes with merge cards, as in 2x(PMMC)")
-        if self.packet is not None and merge is None:
+        if self.packet is not None and merge is None and self.objects != "elements":
             raise InputError(f"--packet: {cards} has no merge card, and so one node, which draws "
                              "all; leave it out, or end nodes with merge cards, as in 2x(PMMC)")
         if self.queue is not None and merge != DIRECT_MERGE:
@@ -160,6 +177,9 @@ class MachineOptions:
                                  "well, as in --regions 8x8")
         if self.balance not in (None, *get_args(Policy)):
             raise InputError(f"balance: {self.balance!r} is none of {', '.join(get_args(Policy))}")
+        if self.objects == "elements" and self.balance not in (None, "runs"):
+            raise InputError(f"--balance: elements that pass objects on have a run of regions "
+                             f"each, not {self.balance}; take runs, or leave it out")
         if (self.balance, self.balancer) == ("learnt", "hardware"):
             raise InputError("--balance: learnt is for a host; the hardware packs the last "
                              "picture's counts as they are: take --balance clocks, or --balancer "
@@ -221,6 +241,9 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     if options.retain and options.list_words is None:
         raise InputError("--retain: without a scene nobody knows how many triangles its lists "
                          "hold; give --list-words, or a scene")
+    if options.objects is not None and None in (options.mesh_triangles, options.meshes):
+        raise InputError("--objects: without a scene nobody knows how many triangles its meshes "
+                         "have; give --mesh-triangles and --meshes, or a scene")
     looking = options.looking()
     if looking != MachineOptions().looking():
         [name] = [name for name in ("view", "zoom", "background", "cull", "light")

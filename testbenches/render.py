@@ -21,7 +21,8 @@ from .frames.node_counts import (
     node_figures,
     unit_differences,
 )
-from .frames.region_figures import region_figures
+from .frames.object_figures import object_figures
+from .frames.region_figures import region_figures, sent_table
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
 from .frames.setup_timing import setup_timing
@@ -100,7 +101,8 @@ class RenderJob:
         observed = replace(self.configuration, observe=True)  # costs no clock
         return simulate_frame(observed, self.scene.display_list, engine=self.options.engine,
                               memory_seed=self.options.random_memory, waveform=recording,
-                              progress=progress)
+                              progress=progress, table=sent_table(
+                                  self.configuration, self.options.policy(self.configuration)))
 
     def _judged(self, simulation: Simulation) -> Rendering:
         configuration, display_list = self.configuration, self.scene.display_list
@@ -117,6 +119,9 @@ class RenderJob:
                                  policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
+        objects = object_figures(configuration, display_list, simulation)
+        if objects is not None:
+            warnings += objects.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
@@ -127,6 +132,7 @@ class RenderJob:
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
             regions=regions,
+            objects=objects,
         )
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..specification.commands import Fault
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
+from .object_shares import ObjectShares
 from .shares import Shares
 
 Bool = NDArray[np.bool_]
@@ -209,10 +210,10 @@ class Organisation(ABC):
 
     @property
     def shares_differ(self) -> bool:
-        """Some processing element has not as many memory units as its cards, which interlace in
-        squares, were built for."""
+        """Some processing element has not as many memory units as its cards, which interlace by
+        equal shares, were built for."""
         configuration = self.configuration
-        return configuration.block > 1 and any(
+        return configuration.equal_shares and any(
             domain.units != 1 << configuration.share_bits for domain in self.domains)
 
     @property
@@ -241,7 +242,8 @@ class Organisation(ABC):
 
     def shares(self, display_list: DisplayList) -> Shares:
         """Which node draws each triangle of a display list."""
-        return Shares.of(display_list, self.nodes, self.configuration.packet)
+        kind = ObjectShares if self.configuration.objects == "nodes" else Shares
+        return kind.of(display_list, self.nodes, self.configuration.packet)
 
     @property
     def owned_units(self) -> int:

@@ -15,13 +15,13 @@ from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import (
     MAXIMUM_PACKET,
-    MAXIMUM_WORDS,
     ONE_PACKET_EACH,
     QUEUE_RANGE,
     RANGES,
 )
+from ...golden.specification.fields.making import MAXIMUM_MESHES, Objects
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
-from ...golden.specification.ranges import MAXIMUM_SIZE
+from ...golden.specification.ranges import MAXIMUM_SIZE, MAXIMUM_WORDS
 from ...golden.specification.regions import MAXIMUM_REGIONS, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
@@ -173,6 +173,9 @@ _FURTHER_OPTIONS = (
     click.option("--skew", is_flag=True, default=None, help="Interlaced pixel by pixel, let two "
                  "memory units of a processing element alternate along its rows, not only from "
                  "row to row: faster where each has one port."),
+    click.option("--lines", is_flag=True, default=None, help="Give processing elements whole "
+                 "lines of the picture in turn: of n elements, a power of two, element i has the "
+                 "lines i, n + i, 2n + i and so on; each wants as many memory units."),
     click.option("--setup", type=click.Choice(list(SETUPS)),
                  help="Who sets triangles up: the host, or the machine itself, with one divider "
                  "of each kind or a pipeline of them.  [default: host]"),
@@ -236,10 +239,27 @@ _DEALING_OPTIONS = (
                  help="With regions: what is counted of each in a picture, by which they are dealt "
                  "out for the next one: triangles, or the clocks these take it; learnt are clocks, "
                  "too, which the host foretells from the last three pictures; static counts "
-                 "nothing, and they stay.  [default: learnt; clocks with --balancer hardware]"),
+                 "nothing, and they stay, dealt out in turn; runs likewise, one run of regions for "
+                 "each element.  [default: learnt; clocks with --balancer hardware]"),
     click.option("--balancer", type=click.Choice(get_args(Balancer)),
                  help="With regions: who deals them out, the host, or the machine itself.  "
                  "[default: host]"),
+)
+
+#: Objects, of which the machine makes triangles.
+_OBJECT_OPTIONS = (
+    click.option("--objects", type=click.Choice(get_args(Objects)),
+                 help="Of an orthographic scene file: load its meshes into the machine, send its "
+                 "objects, and have their triangles made there: by each node, for its share of the "
+                 "objects, once by the controller, or by elements that pass objects on to each "
+                 "other.  --setup is fast then, if nothing is said.  [default: the host sends "
+                 "triangles]"),
+    click.option("--mesh-triangles", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+                 help="With objects: triangles that each mesh memory holds.  [default: what the "
+                 "scene needs]"),
+    click.option("--meshes", type=click.IntRange(1, MAXIMUM_MESHES), metavar="N",
+                 help="With objects: meshes that it can tell apart.  [default: what the scene "
+                 "needs]"),
 )
 
 #: In place of these where there are several cages.
@@ -257,7 +277,7 @@ def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS, *_FURTHER_OPTIONS,
                            _RETAIN_OPTION, *_NODE_OPTIONS, _REGIONS_OPTION, *_DEALING_OPTIONS,
-                           *_VIEW_OPTIONS))
+                           *_OBJECT_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -265,7 +285,7 @@ def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
     asked for, all else is for each of them."""
     return _with(command, (_SEVERAL_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS,
                            *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS,
-                           *_DEALING_OPTIONS, *_VIEW_OPTIONS))
+                           *_DEALING_OPTIONS, *_OBJECT_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:

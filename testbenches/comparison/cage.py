@@ -13,11 +13,17 @@ from ...golden.merging.cage import merge_cage
 from ...golden.merging.traffic import Traffic
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
+from ...golden.specification.card_order import (
+    DIRECT_MERGE,
+    NODE_ENDS,
+    merge_card,
+    parse_cards,
+)
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
 from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
+from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
@@ -74,8 +80,24 @@ class Cage:
         return replace(asked, cards=self.cards, retain=self.retained or None,
                        list_words=asked.list_words if self.retained else None,
                        regions=self.regions, **dealing,
-                       packet=None if merge is None else asked.packet,
-                       queue=asked.queue if merge == DIRECT_MERGE else None)
+                       packet=None if merge is None and not self._forwards(asked, merge)
+                       else asked.packet,
+                       queue=asked.queue if merge == DIRECT_MERGE else None,
+                       **self._objects(asked, merge))
+
+    def _forwards(self, asked: MachineOptions, merge: str | None) -> bool:
+        return asked.objects == "elements" and merge is None and self.regions is not None
+
+    def _objects(self, asked: MachineOptions, merge: str | None) -> dict[str, Any]:
+        """Where this cage makes the triangles of objects, as is asked; another kind of cage is sent
+        triangles, which are set up by the same means."""
+        fits = asked.objects is not None and not self.retained and {
+            "nodes": merge in NODE_ENDS, "controller": merge is None,
+            "elements": self._forwards(asked, merge)}[asked.objects]
+        fields: dict[str, Any] = {name: getattr(asked, name) if fits else None
+                                  for name in ("objects", "mesh_triangles", "meshes")}
+        setup = asked.setup or (None if asked.objects is None else "fast")
+        return fields | {"setup": setup}
 
 
 @dataclass(frozen=True)
@@ -102,6 +124,8 @@ class CageRun:
     ``warnings``     a line each
     ``views``        of all views that were asked for; all else is of the first one
     ``regions``      of the frame that is measured; None where none are dealt out
+    ``objects``      likewise; None where the machine takes none
+    ``link_words``   of 32 bits, on the host link for the first frame, meshes or lists included
     """
 
     cage: Cage
@@ -118,6 +142,8 @@ class CageRun:
     warnings: Sequence[str]
     views: Sequence[ViewFigures] = ()
     regions: RegionFigures | None = None
+    objects: ObjectFigures | None = None
+    link_words: int = 0
 
     @property
     def fragments(self) -> int:
@@ -188,8 +214,10 @@ class CageJob:
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *count_differences(nodes),
              *unit_differences(simulation, golden), *_region_differences(frames.regions),
+             *_object_differences(frames.objects),
              *_view_differences(views)],
-            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions)
+            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions,
+            frames.objects, frames.link_words)
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
@@ -208,6 +236,10 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
 
 def _region_differences(regions: RegionFigures | None) -> list[str]:
     return [] if regions is None else regions.differences
+
+
+def _object_differences(objects: ObjectFigures | None) -> list[str]:
+    return [] if objects is None else objects.differences
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:

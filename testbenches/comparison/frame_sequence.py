@@ -19,6 +19,7 @@ import numpy as np
 
 from ...golden.balancing.table_policy import Policy
 from ...golden.cycles.frame_clocks import most_frame_clocks
+from ...golden.objects.object_words import commands_before
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference.triangle_setup import outline
@@ -32,6 +33,7 @@ from ..engines.choose_engine import make_engine
 from ..engines.engine import EngineRun, Job, Scan
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.object_figures import ObjectFigures, object_figures
 from ..frames.region_figures import RegionFigures, RegionTables
 from ..frames.region_host import region_readings, table_commands
 from ..frames.responses import Answers, Simulation
@@ -92,11 +94,12 @@ class FrameSequence:
                  policy: Policy | None = None) -> None:
         self._configuration = configuration
         self._display_list = display_list
-        whole = frame_commands(configuration, display_list)
-        self._opcodes = [opcode_of(word) for word in whole]
-        self._start = self._opcodes.index(Opcode.FRAME_START)
         tables = (None if configuration.regions is None
                   else RegionTables(configuration, [display_list] * FRAMES, policy=policy))
+        whole = frame_commands(configuration, display_list,
+                               table=None if tables is None else tables.sent(0))
+        self._opcodes = [opcode_of(word) for word in whole]
+        self._start = self._opcodes.index(Opcode.FRAME_START)
         sent = None if tables is None else tables.sent(1)
         dealing = [] if sent is None else table_commands(configuration, sent)
         self._dealing = len(dealing)
@@ -108,13 +111,22 @@ class FrameSequence:
                 configuration, commands=words,
                 responses=responses_owed(organisation_of(configuration), words),
                 memory_seed=memory_seed,
-                maximum_cycles=FRAMES * most_frame_clocks(configuration, len(words))))
+                maximum_cycles=FRAMES * most_frame_clocks(
+                    configuration, max(len(words), display_list.triangles))))
         answers = Answers(configuration, self._run)
         self.simulation: Simulation = answers.frame(
             FRAMES - 1, reading=0, read_back=0,
             table=None if tables is None else tables.table(FRAMES - 1))
         self.regions: RegionFigures | None = (
             None if tables is None else tables.figures(FRAMES - 1, self.simulation))
+
+        self.objects: ObjectFigures | None = object_figures(configuration, display_list,
+                                                            self.simulation)
+
+    @property
+    def link_words(self) -> int:
+        """Of 32 bits, of the first frame and what is loaded for it."""
+        return len(self._opcodes) * commands.command_words(self._configuration)
 
     def _cycles_of(self, kind: ResponseKind) -> list[int]:
         return [cycle for found, _, cycle in self._run.responses if found == kind]
@@ -151,10 +163,13 @@ class FrameSequence:
         return min(np.subtract(merged, drawn).tolist()) if merged else 0
 
     def _load(self) -> int | None:
-        if not self._configuration.list_words:
+        makes = self._configuration.objects is not None
+        if not self._configuration.list_words and not makes:
             return None
         accepted = self._run.accepted
         assert accepted is not None
+        if makes:  # meshes
+            return int(accepted[self._start] - accepted[0])
         drawn = self._opcodes.index(Opcode.DRAW_LISTS)
         loads = [place for place, opcode in enumerate(self._opcodes) if opcode == Opcode.LOAD]
         return int(accepted[drawn] - accepted[loads[0]]) if loads else 0
@@ -180,6 +195,8 @@ class FrameSequence:
         configuration = self._configuration
         if configuration.list_words:
             return self._opcodes.index(Opcode.DRAW_LISTS)
+        if configuration.objects is not None:
+            return self._start + 1 + commands_before(configuration, self._display_list, triangle)
         organisation = organisation_of(configuration)
         sent = place = organisation.shares(self._display_list).host_place
         if configuration.setup == "host":  # what the host's set-up leaves out is not sent

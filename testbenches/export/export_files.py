@@ -14,6 +14,7 @@ from typing import Any
 from ...golden.specification.card_order import CARD_MODULES, MERGING_CARDS
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
+from ...golden.specification.fields.making import NO_OBJECTS
 from ..machine_options import (
     MachineOptions,
     machine_for_scene,
@@ -24,6 +25,9 @@ from ..machine_options import (
 from ..support.any_characters import readable
 from ..support.atomic_output import atomic_file, output_errors
 
+#: Fields that the Verilog's header tells only of machines that have what they ask for.
+_SAID_WHERE_ON = ("lines", *NO_OBJECTS)
+
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
 #: Amaranth and so is not asked here).
 COMPONENT_NAMES = (
@@ -32,12 +36,14 @@ COMPONENT_NAMES = (
     "video_scan_generator", *(CARD_MODULES[letter] for letter in MERGING_CARDS),
     "balancer", "band_probes", "band_scan", "broadcast_queue", "crossbar", "depth_read_back",
     "direct_element", "direct_element_control", "divider", "drawn_map", "edge_columns",
-    "edge_setup", "fragment_queue", "fragment_stepper", "frame_tags", "id_increment",
-    "interpolator", "large_visits", "lattice_block", "least_loaded", "memory_bus_selector",
-    "merge_sorter", "nearest_word", "one_port_depth_test", "one_port_lane", "one_port_memory",
-    "own_columns", "own_regions", "picture_maps", "pipelined_multiplier", "pixel_address",
-    "pixel_box", "plane_setup", "processing_element_control", "region_address", "region_clip",
-    "region_counts", "region_order", "region_places", "region_rows", "region_scan_address",
+    "edge_setup", "element_gate", "forwarding_element", "fragment_queue", "fragment_stepper",
+    "frame_tags", "id_increment", "interpolator", "large_visits", "lattice_block", "least_loaded",
+    "memory_bus_selector", "merge_sorter", "mesh_memory", "nearest_word", "object_forwarder",
+    "object_reach", "object_reader", "object_setup", "one_port_depth_test", "one_port_lane",
+    "one_port_memory", "own_columns", "own_regions", "picture_maps", "pipelined_multiplier",
+    "pixel_address", "pixel_box", "plane_setup", "processing_element_control", "region_address",
+    "region_clip", "region_counts", "region_order", "region_places", "region_rows",
+    "region_scan_address",
     "region_spans", "region_table", "region_visits",
     "response_link", "result_queue", "round_robin", "sampling_grid", "scan_address", "span_clip",
     "survey", "tag_sweep", "triangle_outline", "triangle_rows", "triangle_setup", "triangle_spans",
@@ -169,7 +175,8 @@ def _header(configuration: MachineConfiguration, options: MachineOptions, scene:
     words = ["cardcage export", *([_scene_name(scene)] if scene is not None else []),
              *option_words(options), *(["--component", component] if component else [])]
     built = ", ".join(f"{field.name} {getattr(configuration, field.name)}"
-                      for field in fields(configuration) if field.name != "timing")
+                      for field in fields(configuration) if field.name != "timing"
+                      and (field.name not in _SAID_WHERE_ON or getattr(configuration, field.name)))
     paragraphs = [
         f"Cardcage {version('cardcage')}: {component or 'machine'}, made by",
         "  " + " ".join(" ".join(words).split()),
