@@ -12,7 +12,7 @@ from cardcage.testbenches.machine_options import MachineOptions, load_scene
 #: A hundredth: queues are some bits off.
 ALIKE = 0.01
 
-CAGES = ((Cage("2x(PMM)"), 2), (Cage("2x(PMM)", regions=(4, 4)), 1),
+CAGES = ((Cage("2x(PMM)", regions=(4, 4)), 1),
          (Cage("2x(PMC)", retained=True), 1), (Cage("2x(PMT)", retained=True), 2),
          (Cage("2x(PMMS)F"), 1), (Cage("2xPD2xM", retained=True), 2))
 
