@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from cardcage.golden.planning.machine_plan import plan, triangle_bits
 from cardcage.golden.specification.card_order import CARD_MODULES, DIRECT_MERGE
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.testbenches.atlas.points.atlas_point import FractionBits
 from cardcage.testbenches.comparison.cage import Cage
 from cardcage.testbenches.export.cell_count import count_cells
 from cardcage.testbenches.export.machine_json import component_for
@@ -25,7 +26,7 @@ from cardcage.testbenches.support.cache import sources_hash
 from cardcage.testbenches.support.measurement_cache import measured_once
 
 #: Scene, size and fraction bits: from narrow words to wide ones.
-FORMATS = (
+FORMATS: tuple[tuple[str, int, FractionBits], ...] = (
     ("teapot:tessellation=3", 64, 0),
     ("teapot:tessellation=3", 64, "exact"),
     ("five_primitives", 128, "exact"),
@@ -52,7 +53,7 @@ class Counted(NamedTuple):
     cage: Cage
     board: str
     ports: int
-    format: tuple[str, int, Any]
+    format: tuple[str, int, FractionBits]
 
 
 def wanted() -> list[Counted]:
