@@ -1,5 +1,6 @@
-"""Host broadcast, Blazek's fourth decomposition: what it takes to draw spheres on 1, 2, 4 … elements
-of one cage, however these interlace, where the controller makes the triangles of all objects.
+"""Host broadcast, Blazek's fourth decomposition: what it takes to draw spheres on 1, 2, 4 …
+elements of one cage, however these interlace, where the controller makes the triangles of all
+objects.
 
 Clocks are those of the cycle model, and ``speed-up`` is over one element.  Words on the host link,
 of 32 bits, are the same for any number of elements; beside them are those of the same list sent
@@ -59,8 +60,8 @@ def main(count: int, recursion: int, radius: float, size: int, elements: tuple[i
     words, triangles = link_words(machine, listed), triangle_link_words(machine, listed)
     click.echo(TextTable(
         f"{count:,} spheres of {listed.triangles // count} triangles, radius {radius:g} pixels, "
-        f"{size}x{size}, set-up {setup} at the controller, FIFO of {fifo}: {words.total:,} words on the host link, "
-        f"{words.meshes:,} of them once; {triangles:,} as triangles",
+        f"{size}x{size}, set-up {setup} at the controller, FIFO of {fifo}: {words.total:,} words "
+        f"on the host link, {words.meshes:,} of them once; {triangles:,} as triangles",
         ("elements", "share the picture", "clocks to draw", "speed-up", "of bound", "bound by"),
         tuple(rows)).text())
 
