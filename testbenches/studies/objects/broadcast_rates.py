@@ -23,13 +23,16 @@ from cardcage.testbenches.support.text_table import TextTable
 from .object_rates import spheres
 
 
-def ways(elements: int) -> dict[str, dict[str, Any]]:
-    """How so many elements, a power of two, share the picture."""
-    bits = elements.bit_length() - 1
-    grid = 1 << (bits + 1) // 2, 1 << bits // 2
-    return {"pixel by pixel": {}, "lines in turn": {"lines": True},
-            "strips": {"regions": (1, elements), "balance": "static"},
-            "grid": {"regions": grid, "balance": "static"}}
+def ways(elements: int, height: int) -> dict[str, dict[str, Any]]:
+    """How so many elements can share a picture of that height: each has a strip or a rectangle of
+    its own, or some a second one, where their number is no power of two."""
+    bits = (elements - 1).bit_length()
+    dealt = {"strips": (1, 1 << bits), "grid": (1 << (bits + 1) // 2, 1 << bits // 2)}
+    found: dict[str, dict[str, Any]] = {"pixel by pixel": {}, "lines in turn": {"lines": True}}
+    if elements != 1 << bits:
+        found, dealt = {}, {"lines in turn": (1, height), **dealt}
+    return found | {way: {"regions": regions, "balance": "static"}
+                    for way, regions in dealt.items()}
 
 
 @click.command()
@@ -49,7 +52,7 @@ def main(count: int, recursion: int, radius: float, size: int, elements: tuple[i
     listed = spheres(count, recursion, radius, size)
     rows, alone = [], {}
     for number in elements:
-        for way, fields in ways(number).items():
+        for way, fields in ways(number, size).items():
             machine = plan(listed, cards=f"{number}x(PMM)", memory_ports=2, clocks_per_pixel=2,
                            objects="controller", fifo_depth=fifo, **SETUPS[setup],
                            **fields).configuration
