@@ -60,6 +60,7 @@ class MachineOptions:
     ``memory_ports``      of each memory unit
     ``block``             side of the squares of pixels that processing elements interlace in
     ``skew``              units of a processing element alternate along its rows, too
+    ``lines``             processing elements have whole lines in turn
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     ``packet``            triangles of a packet for each node, ``"contiguous"`` or ``"work"``, which
@@ -103,6 +104,7 @@ class MachineOptions:
     memory_ports: int | None = None
     block: int | None = None
     skew: bool | None = None
+    lines: bool | None = None
     setup: SetupChoice | None = None
     packet: Packet | None = None
     queue: Queue | None = None

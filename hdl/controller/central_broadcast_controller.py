@@ -92,6 +92,7 @@ class CentralBroadcastController(wiring.Component):
         self._setup = (TriangleSetup(configuration=configuration)
                        if configuration.controller_sets_up else None)
         self._nodes = merge_control(configuration)
+        self.storages = self._nodes.storages  # RAMs whose contents outlast a frame
         self.packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
@@ -249,7 +250,7 @@ class CentralBroadcastController(wiring.Component):
     def _observe(self, m):
         offered = self.commands.valid & ((self.opcode == Opcode.TRIANGLE)
                                          | (self.opcode == Opcode.PREPARED_TRIANGLE))
-        m.d.comb += self.more.eq(offered | (0 if self._setup is None else self._setup.busy))
+        m.d.comb += self.more.eq(offered | self._nodes.setting_up(self, self._setup))
 
     # The states.
 
@@ -387,13 +388,13 @@ class CentralBroadcastController(wiring.Component):
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
-        Squares and regions are interlaced by equal shares only."""
+        Squares, lines and regions are interlaced by equal shares only."""
         configuration = self.configuration
         response = self.right.response
         units = response_fields(ResponseKind.DOMAIN, response.payload.value).units
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
             m.d.sync += self._owned.eq(self._owned + units)
-            if configuration.square_bits or configuration.regions is not None:
+            if configuration.equal_shares:
                 with m.If(units != 1 << configuration.share_bits):
                     m.d.sync += self._unequal.eq(1)

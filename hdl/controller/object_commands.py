@@ -1,10 +1,11 @@
 """What the controller does with meshes and objects, and with triangles that are not set up here."""
 
 from amaranth.hdl import *
+from amaranth.lib import data
 
-from ...golden.specification.commands import Fault, Opcode, ResponseKind
+from ...golden.specification.commands import Fault, Opcode, ResponseKind, object_layout
 from ...golden.specification.configuration import MachineConfiguration
-from ..backplane.words import ObjectOperation, Operation
+from ..backplane.words import ObjectOperation, Operation, struct_layout
 
 __all__ = ["ObjectCommands"]
 
@@ -55,8 +56,9 @@ class ObjectCommands:
 
     def _object(self, m, controller):
         full, unknown = self.full(controller), Signal(name="unknown_mesh")
-        mesh = controller.packet.body.make.body.object.mesh
-        m.d.comb += unknown.eq(mesh >= self._loaded)
+        layout = struct_layout(object_layout(self.configuration))
+        offered = data.View(layout, controller.body[:layout.size])
+        m.d.comb += unknown.eq(offered.mesh >= self._loaded)
         said = self.say(m, controller, ObjectOperation.OBJECT, ~full & ~unknown)
         m.d.comb += controller.commands.ready.eq(said | full | unknown)
         with m.If(full):

@@ -46,13 +46,13 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
         raise InputError(f"cards: {configuration.cards}: such a machine boots and draws nothing, "
                          f"fault {int(fault)} ({fault.name}); put as many memory units into each "
                          "node, a power of two")
+    dealing = [] if table is None else table_commands(configuration, table)
     if configuration.objects is not None and fraction_bits is None:
-        return object_commands(configuration, fitted(configuration, display_list))
+        return [*dealing, *object_commands(configuration, fitted(configuration, display_list))]
     triangles = _triangle_words(configuration, display_list, fraction_bits)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     vertices = configuration.setup == "hardware"
     if not configuration.list_words or (vertices and fraction_bits is not None):
-        dealing = [] if table is None else table_commands(configuration, table)
         return [*dealing, start, *triangles, end]
     clear, draw = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.DRAW_LISTS))
     loads = [commands.with_opcode(word, Opcode.LOAD) for word in triangles]

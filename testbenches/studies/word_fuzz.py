@@ -30,6 +30,7 @@ MACHINES: dict[str, dict[str, Any]] = {
     "not square": {"cards": "PPMMMPM", "width": 6, "height": 5, "shading": "flat"},
     "coarser": {"cards": "PMM", "width": 9, "height": 7, "words": 10},
     "squares": {"cards": "2x(PMM)", "width": 9, "height": 8, "block": 2},
+    "lines": {"cards": "2x(PMM)", "width": 7, "height": 8, "lines": True},
     "skew": {"cards": "2x(PMM)", "width": 8, "height": 8, "skew": True},
     "two ports": {"cards": "MMPMPM", "width": 8, "height": 8, "memory_ports": 2,
                   "allow_orphans": True},
@@ -41,6 +42,7 @@ MACHINES: dict[str, dict[str, Any]] = {
     "regions": {"cards": "3x(PM)", "width": 8, "height": 8, "regions": (4, 4)},
     "regions, hardware": {"cards": "2x(PMM)", "width": 9, "height": 7, "regions": (3, 2),
                           "balancer": "hardware", "shading": "flat"},
+    "objects": {"cards": "2x(PMC)", "setup": "hardware", "setup_interval": 8, "objects": "nodes"},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
     "larger": {"cards": "PMMPMM", "width": 48, "height": 40},
@@ -48,13 +50,16 @@ MACHINES: dict[str, dict[str, Any]] = {
 }
 
 #: Those that are worth compiling; pysim is quicker for the others, model and all.
-LARGER = ("larger", "larger set-up")
+LARGER = ("larger", "larger set-up", "objects")
 
 
 @cache
 def machine(name: str) -> tuple[MachineConfiguration, tuple[DisplayList, ...]]:
     """A machine of ``MACHINES`` and the good frames it draws."""
     fields: dict[str, Any] = {"clocks_per_pixel": 2, **MACHINES[name]}
+    if "objects" in fields:
+        only = make_display_list("three_cubes", width=8, height=8).display_list
+        return plan(only, packet=1, **fields).configuration, (only,)
     if "width" not in fields:
         only = make_display_list("tetra:depth=1", width=8, height=8).display_list
         planned = plan(only, **fields).configuration

@@ -57,7 +57,7 @@ class DealingFields(Widths):
         if self.merge is not None:
             raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
                              "cage of one node, such as 4x(PMM)")
-        for name, default in (("block", 1), ("skew", False)):
+        for name, default in (("block", 1), ("skew", False), ("lines", False)):
             if getattr(self, name) != default:
                 raise InputError(f"{name}: is settled by the regions; leave it out")
         inside = self.interlace

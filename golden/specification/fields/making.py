@@ -34,8 +34,9 @@ class MakingFields(Widths):
 
     @property
     def controller_sets_up(self) -> bool:
-        """Vertices are made prepared triangles in the controller, before they are broadcast."""
-        return self.setup == "hardware" and self.objects not in ("nodes", "elements")
+        """Vertices that the host sends, and no objects, are made prepared triangles in the
+        controller, before they are broadcast."""
+        return self.setup == "hardware" and self.objects is None
 
     @property
     def reports_full(self) -> bool:

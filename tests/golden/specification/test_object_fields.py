@@ -37,7 +37,7 @@ def test_what_follows():
     of_nodes = MachineConfiguration("2x(PMC)", **SIZE, **OBJECTS, objects="nodes")
     assert (of_nodes.mesh_bits, of_nodes.controller_sets_up) == (2, False)
     broadcast = MachineConfiguration("2x(PM)", **SIZE, **OBJECTS, objects="controller")
-    assert broadcast.controller_sets_up and broadcast.order_bits == 0
+    assert not broadcast.controller_sets_up and broadcast.order_bits == 0
     # Objects come in any order: their number is kept beside the depth.
     forwarding = MachineConfiguration("2x(PM)", **SIZE, **OBJECTS, objects="elements",
                                       regions=(4, 1), balance="static")
