@@ -1,0 +1,127 @@
+"""What every method takes on his machine, for all numbers of nodes and spheres."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property, partial
+from statistics import mean, pstdev
+from typing import Any
+
+from ....support.measurement_cache import measured_once, package_hash
+from ..scenes.spheres import NODES, SPHERES, Size
+from .methods import (
+    PACKETS,
+    USUAL_PACKET,
+    Frame,
+    Scene,
+    broadcast,
+    forwarding,
+    host_initiated,
+    node_initiated,
+)
+
+Method = Callable[[Scene, int], Frame]
+
+#: By their names on the page.
+HOST = {packet: f"host initiated, {packet}" for packet in PACKETS}
+USUAL_HOST = HOST[USUAL_PACKET]
+NODE = "node initiated"
+STRIPS, GRID = "forwarding, strips", "forwarding, grid"
+LINES, BROADCAST_STRIPS = "broadcast, lines", "broadcast, strips"
+LINEAR = "broadcast one by one, lines"
+
+METHODS: dict[str, Method] = {
+    **{HOST[packet]: partial(host_initiated, packet=packet) for packet in PACKETS},
+    NODE: node_initiated,
+    STRIPS: partial(forwarding, parts="strips"),
+    GRID: partial(forwarding, parts="grid"),
+    LINES: partial(broadcast, parts="lines"),
+    BROADCAST_STRIPS: partial(broadcast, parts="strips"),
+    LINEAR: partial(broadcast, parts="lines", hierarchical=False),
+}
+
+#: Those whose time does not depend on where the spheres are.
+PLACELESS = (*HOST.values(), NODE)
+
+#: Scenes of one number of spheres, each at other places.
+SEEDS = tuple(range(8))
+
+
+def seeds_of(method: str) -> Sequence[int]:
+    return SEEDS[:1] if method in PLACELESS else SEEDS
+
+
+@dataclass(frozen=True)
+class TimesJob:
+    """One method at all numbers of nodes and spheres, at the places of one seed."""
+
+    method: str
+    seed: int
+    size: Size
+
+    def run(self) -> dict[str, Any]:
+        return measured_once([package_hash(), "blazek's times", repr(self)], self._measure)
+
+    def _measure(self) -> dict[str, Any]:
+        frames = []
+        for spheres in SPHERES:
+            scene = Scene.of(self.size, self.seed, spheres)
+            frames.append([asdict(METHODS[self.method](scene, nodes)) for nodes in NODES])
+        return {"frames": frames}
+
+
+@dataclass(frozen=True, eq=False)
+class Times:
+    """A method; ``frames`` by seed, number of spheres and number of nodes."""
+
+    method: str
+    frames: Sequence[Sequence[Sequence[Frame]]]
+
+    def of(self, spheres: int, nodes: int) -> list[Frame]:
+        """Of each seed."""
+        return [each[SPHERES.index(spheres)][NODES.index(nodes)] for each in self.frames]
+
+    def seconds(self, spheres: int, nodes: int) -> float:
+        """The mean."""
+        return mean(frame.seconds for frame in self.of(spheres, nodes))
+
+    def speed_up(self, spheres: int, nodes: int) -> float:
+        """Of the mean times, against one node by the same method."""
+        return self.seconds(spheres, 1) / self.seconds(spheres, nodes)
+
+    def efficiency(self, spheres: int, nodes: int) -> float:
+        """Speed-up over nodes."""
+        return self.speed_up(spheres, nodes) / nodes
+
+    def curve(self, spheres: int) -> list[float]:
+        """Speed-up along ``NODES``."""
+        return [self.speed_up(spheres, nodes) for nodes in NODES]
+
+    def curves_of_seeds(self, spheres: int) -> list[list[float]]:
+        """Speed-up along ``NODES``, of each seed by itself."""
+        return [[one.seconds / other.seconds for other in row] for row in (
+            each[SPHERES.index(spheres)] for each in self.frames) for one in row[:1]]
+
+    def spread(self, spheres: int, nodes: int) -> float:
+        """Standard deviation of a seed's time, as a part of the mean."""
+        return pstdev(frame.seconds for frame in self.of(spheres, nodes)) / self.seconds(
+            spheres, nodes)
+
+    @cached_property
+    def fastest(self) -> int:
+        """The number of spheres of the run with the largest speed-up on the most nodes."""
+        return max(SPHERES, key=lambda spheres: self.speed_up(spheres, NODES[-1]))
+
+
+def times_jobs(size: Size) -> list[TimesJob]:
+    return [TimesJob(method, seed, size) for method in METHODS for seed in seeds_of(method)]
+
+
+def times_of(jobs: Sequence[TimesJob], found: Sequence[dict[str, Any]]) -> dict[str, Times]:
+    """By method."""
+    frames: dict[str, list[Any]] = {method: [] for method in METHODS}
+    for job, measured in zip(jobs, found, strict=True):
+        frames[job.method].append([[Frame(**frame) for frame in row]
+                                   for row in measured["frames"]])
+    return {method: Times(method, each) for method, each in frames.items()}
