@@ -59,6 +59,7 @@ class MachineOptions:
     ``memory_ports``      of each memory unit
     ``block``             side of the squares of pixels that processing elements interlace in
     ``skew``              units of a processing element alternate along its rows, too
+    ``lines``             processing elements have whole lines in turn
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     ``packet``            triangles of a packet for each node, ``"contiguous"`` or ``"work"``, which
@@ -70,9 +71,10 @@ class MachineOptions:
     ``regions``           columns and rows of the regions of the screen that are dealt out to
                           processing elements; None interlaces pixels
     ``slots``             regions that each of them has room for
-    ``balance``           by which the next table is made: ``static`` nothing, ``triangles`` or
-                          ``clocks`` of each region in the last picture, which is what the machine
-                          counts; ``learnt``, clocks that the host foretells from the last three
+    ``balance``           by which the next table is made: ``static`` and ``runs`` nothing,
+                          ``triangles`` or ``clocks`` of each region in the last picture, which is
+                          what the machine counts; ``learnt``, clocks that the host foretells from
+                          the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
 
     How a mesh is looked at; a display list can be asked for none of it:
@@ -95,6 +97,7 @@ class MachineOptions:
     memory_ports: int | None = None
     block: int | None = None
     skew: bool | None = None
+    lines: bool | None = None
     setup: SetupChoice | None = None
     packet: Packet | None = None
     queue: Queue | None = None

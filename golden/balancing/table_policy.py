@@ -4,18 +4,42 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
+from ..organisations.dealt_regions import DealtRegions
+from ..organisations.organisation_of import organisation_of
+from ..organisations.region_table import Int64, runs_table
 from ..specification.configuration import MachineConfiguration
 from ..specification.errors import InputError
 from ..specification.regions import Balance
 
-#: The last picture's counts as they are, of what a machine counts; or, by a host that has a
-#: machine's clocks, ``learnt_counts`` of the last three.
-Policy = Literal["static", "triangles", "clocks", "learnt"]
+#: Nothing: the table is that of the boot, ``static``, or has a run of regions for each processing
+#: element, ``runs``.  Or the last picture's counts as they are, of what a machine counts; or, by a
+#: host that has a machine's clocks, ``learnt_counts`` of the last three.
+Policy = Literal["static", "runs", "triangles", "clocks", "learnt"]
+
+#: Those that keep the first table.
+UNCOUNTED_POLICIES: tuple[Policy, ...] = ("static", "runs")
 
 
 def counted_by(policy: Policy) -> Balance:
     """What a machine must count for it."""
-    return "clocks" if policy == "learnt" else policy
+    if policy == "learnt":
+        return "clocks"
+    return "static" if policy == "runs" else policy
+
+
+def first_table(configuration: MachineConfiguration, policy: Policy) -> Int64:
+    """int64 (regions,): by which the first picture is drawn; but for runs that with which the
+    machine begins."""
+    if policy == "runs":
+        return runs_table(configuration.dealt_regions.count, configuration.processing_elements)
+    return boot_table(configuration)
+
+
+def boot_table(configuration: MachineConfiguration) -> Int64:
+    """int64 (regions,): with which a machine begins, whatever a host says later."""
+    organisation = organisation_of(configuration)
+    assert isinstance(organisation, DealtRegions)
+    return organisation.table.copy()
 
 
 def default_policy(configuration: MachineConfiguration) -> Policy:

@@ -209,10 +209,10 @@ class Organisation(ABC):
 
     @property
     def shares_differ(self) -> bool:
-        """Some processing element has not as many memory units as its cards, which interlace in
-        squares, were built for."""
+        """Some processing element has not as many memory units as its cards, which interlace by
+        equal shares, were built for."""
         configuration = self.configuration
-        return configuration.block > 1 and any(
+        return configuration.equal_shares and any(
             domain.units != 1 << configuration.share_bits for domain in self.domains)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, get_args
 
-from .card_order import MAXIMUM_NODES, check_cards, check_merging, parse_cards
+from .card_order import MAXIMUM_NODES, PROCESSING_ELEMENT, check_cards, check_merging, parse_cards
 from .display_list import Shading, coordinate_bits
 from .errors import InputError
 from .fixed_point import MAX_FRACTION_BITS, on_screen_fraction_bits
@@ -15,6 +15,7 @@ from .interlace import (
     MAXIMUM_BLOCK,
     Interlace,
     check_diagonal,
+    check_lines,
     check_squares,
     interlace_for,
 )
@@ -85,6 +86,8 @@ class MachineConfiguration(Widths):
                           power of two; 1 interlaces all memory units pixel by pixel
     ``skew``              interlaced pixel by pixel, two units of a processing element alternate
                           along its rows, not only from row to row
+    ``lines``             processing elements have whole lines in turn: of n elements element i has
+                          the lines i, n + i and so on
     ``memory_ports``      of a memory unit: 1, shared by all, or 2, as FPGAs have them
     ``tag_bits``          of the frame's tag beside each depth and colour, which spares the clear
     ``clocks_per_pixel``  clocks a pixel lasts on the video output; one of them is the scan's slot
@@ -149,6 +152,7 @@ class MachineConfiguration(Widths):
     fifo_depth: int = 16
     block: int = 1
     skew: bool = False
+    lines: bool = False
     memory_ports: int = 1
     tag_bits: int = 4
     clocks_per_pixel: int = 4
@@ -203,13 +207,16 @@ class MachineConfiguration(Widths):
         most = edge_fraction_bits(self.edge_height_bits, self.height)
         check_whole("edge_fraction_bits", self.edge_fraction_bits, 0, most)
         fix("edge_fraction_bits", self.edge_fraction_bits or most)
+        if self.lines and not self.merges_directly:
+            check_lines(self.node_cards[0].count(PROCESSING_ELEMENT), self.shares_of_units,
+                        self.height, block=self.block, skew=self.skew, orphans=self.allow_orphans)
         if not self.allow_orphans:
             check_cards(self.cards, dealt=self.regions is not None)
         self._check_nodes()
         check_squares(self.block, self.shares_of_units, skew=self.skew,
                       orphans=self.allow_orphans)
         if self.merges_directly:
-            check_diagonal(self.block, skew=self.skew)
+            check_diagonal(self.block, skew=self.skew, lines=self.lines)
         if self.regions is not None:
             fix("slots", self._check_regions())
             fix("words", self.slots << self.slot_bits)
@@ -217,7 +224,7 @@ class MachineConfiguration(Widths):
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
                              square_bits=self.square_bits, share_bits=self.share_bits,
-                             skew=self.skew, diagonal=self.merges_directly)
+                             skew=self.skew, diagonal=self.merges_directly, lines=self.lines)
             if full.words > MAXIMUM_WORDS:
                 raise InputError(f"size: {self.width}x{self.height} needs {full.words} words in "
                                  f"each of {self.units} memory units, at most {MAXIMUM_WORDS}; "
@@ -285,7 +292,7 @@ class MachineConfiguration(Widths):
         if self.merge is not None:
             raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
                              "cage of one node, such as 4x(PMM)")
-        for name, default in (("block", 1), ("skew", False)):
+        for name, default in (("block", 1), ("skew", False), ("lines", False)):
             if getattr(self, name) != default:
                 raise InputError(f"{name}: is settled by the regions; leave it out")
         inside = self.interlace
@@ -334,10 +341,11 @@ class MachineConfiguration(Widths):
     @property
     def interlace(self) -> Interlace:
         """The interlace this cage settles on at boot; where regions are dealt out, of each region's
-        pixels over its processing element's units."""
+        pixels over its processing element's units: along its line, if it has only one."""
         if self.regions is not None:
             regions = self.dealt_regions
-            return Interlace(self.share_bits, 1 << regions.x_bits, 1 << regions.y_bits)
+            line = {} if regions.y_bits else {"share_bits": self.share_bits, "lines": True}
+            return Interlace(self.share_bits, 1 << regions.x_bits, 1 << regions.y_bits, **line)
         return self._interlace_of(self.units)
 
     def pictures(self) -> Sequence[Interlace | RegionedPicture]:
@@ -356,15 +364,15 @@ class MachineConfiguration(Widths):
     def _interlace_of(self, units: int) -> Interlace:
         return interlace_for(self.width, self.height, words=self.words, units=units,
                              square_bits=self.square_bits, share_bits=self.share_bits,
-                             skew=self.skew, diagonal=self.merges_directly)
+                             skew=self.skew, diagonal=self.merges_directly, lines=self.lines)
 
     @cached_property
     def frame(self) -> MachineConfiguration:
         """Of a cage of one node whose memory units are the frame units: these hold the picture as
         those would, one word for each of its pixels."""
         return replace(self, cards="P" + "M" * self.frame_units, words=0, maximum_units=0, block=1,
-                       skew=False, packet=1, order_bits=0, list_words=0, maximum_nodes=0,
-                       allow_orphans=True)
+                       skew=False, lines=False, packet=1, order_bits=0, list_words=0,
+                       maximum_nodes=0, allow_orphans=True)
 
     @cached_property
     def dealt_regions(self) -> Regions:
@@ -393,7 +401,8 @@ class MachineConfiguration(Widths):
     @property
     def aligned_domains(self) -> bool:
         """Every domain that draws is one aligned block of units, a power of two of them."""
-        return self.block > 1 or self.maximum_units <= 2 or self.merges_directly
+        return (self.block > 1 or self.lines or self.maximum_units <= 2
+                or self.merges_directly)
 
     @property
     def cycles_per_scan(self) -> int:

@@ -11,6 +11,10 @@ Where processing elements interlace in squares, of ``2**square_bits`` pixels a s
 the bits of x and y above those inside a square name the processing element; the
 units of one, ``2**share_bits``, still interlace pixel by pixel, inside its squares.
 
+Where they interlace in lines, as Blazek's scan lines do (1991), the low bits of y are the number
+of the processing element: of n elements element i has the lines i, n + i, 2n + i and so on.
+Its units interlace along each line, by the low bits of x.
+
 The least significant bit of the number is one of y, so two units of a processing
 element have its rows in turn.  Skewed, the bit is that one xor the lowest bit of x
 that names no unit: they alternate along each row too, and the pixels of one of them
@@ -35,6 +39,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .regions import MAXIMUM_REGIONS
 
 MAXIMUM_BLOCK = 32
 
@@ -54,10 +59,10 @@ class Interlace:
     the squares in which processing elements interlace, of ``2**share_bits`` units each; both 0
     where all units interlace pixel by pixel, whomever they belong to.  ``skew``: the last bit of
     the number is skewed; not in squares.  ``diagonal``: none of these; each row begins at another
-    unit.
+    unit.  ``lines``: processing elements of ``2**share_bits`` units have lines in turn.
 
     Raises ``ValueError`` where there are fewer units than in a share, or fewer pixels in a square,
-    or squares are to be skewed, or either is to be diagonal.
+    or squares are to be skewed, or either is to be diagonal, or any of these is to be in lines.
     """
 
     unit_bits: int
@@ -69,15 +74,18 @@ class Interlace:
     share_bits: int = 0
     skew: bool = False
     diagonal: bool = False
+    lines: bool = False
 
     def __post_init__(self) -> None:
-        most = min(self.unit_bits, 2 * self.square_bits)
+        most = min(self.unit_bits, self.unit_bits if self.lines else 2 * self.square_bits)
         if not 0 <= self.share_bits <= most:
             raise ValueError(f"share_bits must be 0 to {most}, not {self.share_bits}")
         if self.skew and self.square_bits:
             raise ValueError("skew wants square_bits 0: in squares units alternate along x already")
         if self.diagonal and (self.square_bits or self.skew):
             raise ValueError("diagonal wants neither skew nor squares")
+        if self.lines and (self.square_bits or self.skew or self.diagonal):
+            raise ValueError("lines want neither squares nor skew nor diagonal")
 
     @property
     def units(self) -> int:
@@ -90,6 +98,9 @@ class Interlace:
         if self.diagonal:
             return tuple(("x", bit) for bit in reversed(range(self.unit_bits)))
         lattice_bits = self.unit_bits - self.share_bits
+        if self.lines:
+            return (*(("y", bit) for bit in reversed(range(lattice_bits))),
+                    *(("x", bit) for bit in reversed(range(self.share_bits))))
         order = [("xy"[place % 2], self.square_bits + place // 2) for place in range(lattice_bits)]
         if lattice_bits % 2:
             order[-1] = ("y", order[-1][1])
@@ -220,7 +231,8 @@ def _extent(size: int, mask: int) -> int:
 
 
 def interlace_for(width: int, height: int, *, words: int, units: int, square_bits: int = 0,
-                  share_bits: int = 0, skew: bool = False, diagonal: bool = False) -> Interlace:
+                  share_bits: int = 0, skew: bool = False, diagonal: bool = False,
+                  lines: bool = False) -> Interlace:
     """The interlace of ``units`` units (a power of two) of ``words`` words each.
 
     Where the memory does not hold ``width`` × ``height``, the picture is halved, y first, then
@@ -242,6 +254,7 @@ def interlace_for(width: int, height: int, *, words: int, units: int, square_bit
             share_bits=share_bits,
             skew=skew,
             diagonal=diagonal,
+            lines=lines,
         )
         if interlace.words <= words:
             return interlace
@@ -273,9 +286,33 @@ def check_squares(block: int, shares: Set[int], *, skew: bool, orphans: bool) ->
                          "larger, or interlace pixel by pixel (1)")
 
 
-def check_diagonal(block: int, *, skew: bool) -> None:
-    """Raise ``InputError`` where units that interlace diagonally are to do so in another way."""
+def check_lines(elements: int, shares: Set[int], height: int, *, block: int, skew: bool,
+                orphans: bool) -> None:
+    """Raise ``InputError`` unless so many processing elements, with so many memory units each, can
+    have the lines of a picture of ``height`` in turn; ``orphans``: boards may have been pulled
+    out."""
     for name, asked in (("block", block > 1), ("skew", skew)):
+        if asked:
+            raise InputError(f"{name}: processing elements that have lines in turn interlace "
+                             "neither in squares nor skewed; leave it out, or leave out lines")
+    if orphans:
+        return
+    if len(shares) > 1:
+        raise InputError("lines: processing elements that have lines in turn want as many memory "
+                         f"units each, not {' and '.join(map(str, sorted(shares)))}; change the "
+                         "cards, or leave out lines")
+    if elements & (elements - 1):
+        lower = 1 << (elements.bit_length() - 1)
+        raise InputError(f"lines: {elements} processing elements cannot have lines in turn; take a "
+                         f"power of two, such as {lower} or {2 * lower}" + (
+                             "" if height > MAXIMUM_REGIONS else
+                             "; or, in place of lines, regions of one line each, which are dealt "
+                             f"to any number of them, as with --regions 1x{height}"))
+
+
+def check_diagonal(block: int, *, skew: bool, lines: bool) -> None:
+    """Raise ``InputError`` where units that interlace diagonally are to do so in another way."""
+    for name, asked in (("block", block > 1), ("skew", skew), ("lines", lines)):
         if asked:
             raise InputError(f"{name}: behind a direct merge memory units interlace diagonally; "
                              "leave it out")

@@ -57,6 +57,7 @@ class Widths(Cage):
     fraction_bits: int
     words: int
     block: int
+    lines: bool
     maximum_nodes: int
     order_bits: int
     depth_integer_bits: int
@@ -89,14 +90,19 @@ class Widths(Cage):
         return self.block.bit_length() - 1
 
     @property
+    def equal_shares(self) -> bool:
+        """All processing elements have as many memory units: they interlace in squares, in lines
+        or in regions."""
+        return self.block > 1 or self.lines or self.regions is not None
+
+    @property
     def share_bits(self) -> int:
-        """Log2 of the memory units of each processing element, where they interlace in squares or
-        in regions.
+        """Log2 of the memory units of each processing element, where all have as many.
 
         It is that of the cards as built: with boards pulled out so that shares differ, the machine
         draws nothing.
         """
-        if self.block == 1 and self.regions is None:
+        if not self.equal_shares:
             return 0
         return max(1, *self.shares_of_units).bit_length() - 1
 

@@ -387,13 +387,13 @@ class CentralBroadcastController(wiring.Component):
 
     def _count_owned(self, m):
         """Add up the domains as their reports pass; what is missing from the total is nobody's.
-        Squares and regions are interlaced by equal shares only."""
+        Squares, lines and regions are interlaced by equal shares only."""
         configuration = self.configuration
         response = self.right.response
         units = response_fields(ResponseKind.DOMAIN, response.payload.value).units
         with m.If(response.valid & response.ready
                   & (response.payload.kind == ResponseKind.DOMAIN)):
             m.d.sync += self._owned.eq(self._owned + units)
-            if configuration.square_bits or configuration.regions is not None:
+            if configuration.equal_shares:
                 with m.If(units != 1 << configuration.share_bits):
                     m.d.sync += self._unequal.eq(1)

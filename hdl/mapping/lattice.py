@@ -67,7 +67,7 @@ class LatticeBlock(wiring.Component):
 
     The pixels of an aligned power-of-two block of units form a regular lattice;
     a processing element walks its domain block by block (one, where the shares
-    are equal powers of two).  Interlaced in squares, a share is the only block; diagonally,
+    are equal powers of two).  Interlaced in squares or lines, a share is the only block; diagonally,
     all units are, and all pixels theirs.  Skewed, every other row of a block of one unit is
     shifted.
 
@@ -99,7 +99,7 @@ class LatticeBlock(wiring.Component):
             m.d.comb += self.after.eq(self.end)
             return m
         shares = range(self.configuration.id_bits)
-        if self.configuration.square_bits:
+        if self.configuration.equal_shares:
             shares = (self.configuration.share_bits,)
         for unit_block_bits in shares:
             size = 1 << unit_block_bits

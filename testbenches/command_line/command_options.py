@@ -173,6 +173,9 @@ _FURTHER_OPTIONS = (
     click.option("--skew", is_flag=True, default=None, help="Interlaced pixel by pixel, let two "
                  "memory units of a processing element alternate along its rows, not only from "
                  "row to row: faster where each has one port."),
+    click.option("--lines", is_flag=True, default=None, help="Give processing elements whole "
+                 "lines of the picture in turn: of n elements, a power of two, element i has the "
+                 "lines i, n + i, 2n + i and so on; each wants as many memory units."),
     click.option("--setup", type=click.Choice(list(SETUPS)),
                  help="Who sets triangles up: the host, or the machine itself, with one divider "
                  "of each kind or a pipeline of them.  [default: host]"),
@@ -236,7 +239,8 @@ _DEALING_OPTIONS = (
                  help="With regions: what is counted of each in a picture, by which they are dealt "
                  "out for the next one: triangles, or the clocks these take it; learnt are clocks, "
                  "too, which the host foretells from the last three pictures; static counts "
-                 "nothing, and they stay.  [default: learnt; clocks with --balancer hardware]"),
+                 "nothing, and they stay, dealt out in turn; runs likewise, one run of regions for "
+                 "each element.  [default: learnt; clocks with --balancer hardware]"),
     click.option("--balancer", type=click.Choice(get_args(Balancer)),
                  help="With regions: who deals them out, the host, or the machine itself.  "
                  "[default: host]"),

@@ -53,6 +53,8 @@ def _numbers(least: int, most: int) -> Several:
 @click.option("--skew/--no-skew", default=None, help="Whether two units of a processing element "
               "alternate along its rows, not only from row to row; wants --block 1.  [default: "
               "where they have one port]")
+@click.option("--lines", type=Several(click.BOOL, "yes|no,…"), help="Whether processing elements "
+              "have whole lines in turn, in place of --block 1.  [default: no]")
 @click.option("--fifo", "fifos", type=_numbers(*RANGES["fifo_depth"]),
               help="Triangles a processing element holds in waiting.  [default: 16]")
 @click.option("--regions", type=Several(RegionCounts("none"), "COLUMNSxROWS,…"),

@@ -26,6 +26,8 @@ class MachineAxes:
     ``blocks``    pixels a side that neighbour in one processing element; 1 is the interlace of 1979
     ``skew``      units of a processing element alternate along its rows, too: all machines, none,
                   or None: those whose units have one port, where blocks are of one pixel
+    ``lines``     whether processing elements have whole lines in turn, in place of blocks of one
+                  pixel
     ``fifos``     triangles that a processing element can hold in waiting
     ``regions``   columns and rows of regions of the screen that are dealt out to processing
                   elements, by what the same picture costs them; None interlaces pixels
@@ -38,6 +40,7 @@ class MachineAxes:
     setups: Sequence[SetupChoice] = ("host",)
     blocks: Sequence[int] = (1,)
     skew: bool | None = None
+    lines: Sequence[bool] = (False,)
     fifos: Sequence[int] = (MachineConfiguration.fifo_depth,)
     regions: Sequence[tuple[int, int] | None] = (None,)
     balances: Sequence[Balance] = (MachineConfiguration.balance,)
@@ -62,6 +65,7 @@ class BenchMachine:
     fifo: int
     configuration: MachineConfiguration
     regions: tuple[int, int] | None = None
+    lines: bool = False
 
     @property
     def label(self) -> str:
@@ -72,6 +76,8 @@ class BenchMachine:
             words.append(f"blocks of {self.block}")
         if self.skew:
             words.append("skewed")
+        if self.lines:
+            words.append("lines in turn")
         if self.fifo != MachineConfiguration.fifo_depth:
             words.append(f"FIFO of {self.fifo}")
         if self.regions is not None:
@@ -85,7 +91,8 @@ def bench_machines(axes: MachineAxes) -> list[BenchMachine]:
     return [_machine(*chosen) for chosen in product(
         axes.elements, axes.units, axes.ports, axes.setups, axes.blocks, (axes.skew,),
         axes.fifos, [(regions, balance) for regions in axes.regions
-                     for balance in (axes.balances if regions else axes.balances[:1])])]
+                     for balance in (axes.balances if regions else axes.balances[:1])],
+        axes.lines)]
 
 
 def varied(machines: Sequence[BenchMachine]) -> list[str]:
@@ -101,15 +108,16 @@ def beside_interlace(machines: Sequence[BenchMachine]) -> bool:
 
 def _machine(elements: int, units: int, ports: int, setup: SetupChoice, block: int,
              skew: bool | None, fifo: int,
-             dealing: tuple[tuple[int, int] | None, Balance]) -> BenchMachine:
+             dealing: tuple[tuple[int, int] | None, Balance], lines: bool) -> BenchMachine:
     regions, balance = dealing
     if skew is None:
-        skew = ports == 1 and units > 1 and block == 1 and regions is None
+        skew = ports == 1 and units > 1 and block == 1 and regions is None and not lines
     dealt: dict[str, Any] = {} if regions is None else {"regions": regions, "balance": balance}
     configuration = MachineConfiguration(
         cards=f"{elements}x(P{'M' * units})", width=SIZE, height=SIZE, sub_bits=SUB_BITS,
         depth_bits=DEPTH_BITS, shading="flat", clocks_per_pixel=CLOCKS_PER_PIXEL, fifo_depth=fifo,
         observe=True,  # costs no clock
-        memory_ports=ports, block=block, skew=skew, **SETUPS[setup], **dealt,
+        memory_ports=ports, block=block, skew=skew, lines=lines, **SETUPS[setup], **dealt,
         **on_screen_widths(SIZE, SIZE, SUB_BITS))
-    return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration, regions)
+    return BenchMachine(elements, units, ports, setup, block, skew, fifo, configuration, regions,
+                        lines)

@@ -26,7 +26,8 @@ def region_chart(rows: Sequence[BenchRow], path: Path) -> None:
     Simulated bars are full, predicted ones hatched.
     """
     interlaced = {(row.case, row.order, _alike(row.machine)): row.cycles for row in rows
-                  if row.machine.regions is None and row.machine.block == 1}
+                  if row.machine.regions is None and row.machine.block == 1
+                  and not row.machine.lines}
     factors: dict[str, dict[str, tuple[float, bool]]] = {}
     for row in rows:
         before = interlaced.get((row.case, row.order, _alike(row.machine)))

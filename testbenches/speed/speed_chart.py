@@ -32,6 +32,7 @@ def bench_chart(rows: Sequence[BenchRow], path: Path) -> None:
     lines: dict[tuple[str, ...], list[BenchRow]] = {}
     for row in rows:
         others = [f"{value(row, name)} {name}" for name in rest]
+        others += ["lines in turn"] * row.machine.lines
         cards = f"{row.machine.units} units, {row.machine.ports} ports, {row.machine.setup}"
         lines.setdefault((row.case, row.order, cards, *others), []).append(row)
     figure = Figure(figsize=(9.0, 5.5), layout="constrained")

@@ -134,7 +134,7 @@ def _facts(row: BenchRow) -> dict[str, Any]:
         "machine": {"label": machine.label, "cards": machine.configuration.cards,
                     "processing_elements": machine.elements, "units_each": machine.units,
                     "memory_ports": machine.ports, "setup": machine.setup, "block": machine.block,
-                    "skew": machine.skew,
+                    "skew": machine.skew, "lines": machine.lines,
                     "fifo_depth": machine.fifo,
                     "regions": machine.regions,
                     "balance": machine.configuration.balance if machine.regions else None,
