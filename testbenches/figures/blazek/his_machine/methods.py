@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .....golden.merging.tree import tree_pairs
 from ..scenes.screen_parts import Parts, work_in_parts
-from ..scenes.sphere_work import SphereTemplate, sphere_template
+from ..scenes.sphere_work import SphereTemplate, Work, sphere_template
 from ..scenes.spheres import SCALE, Size, sphere_places, sphere_radius
 from .costs import COSTS, Costs
 from .queues import forwarded, served
@@ -55,10 +55,13 @@ class Scene:
     def spheres(self) -> int:
         return len(self.places)
 
+    def work(self, nodes: int, parts: Parts) -> Work:
+        """(spheres, nodes): the part of each sphere that a node has."""
+        return work_in_parts(self.template, self.places, self.size, nodes, parts)
+
     def drawing(self, nodes: int, parts: Parts) -> Float64:
-        """(spheres, nodes): of the part of each sphere that a node has; 0 where there is none."""
-        return np.asarray(self.costs.drawing(
-            work_in_parts(self.template, self.places, self.size, nodes, parts)))
+        """(spheres, nodes): seconds for that; 0 where there is none."""
+        return np.asarray(self.costs.drawing(self.work(nodes, parts)))
 
     @property
     def tessellating(self) -> float:

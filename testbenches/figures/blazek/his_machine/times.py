@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from functools import cached_property, partial
-from statistics import mean, pstdev
+from functools import partial
+from statistics import mean
 from typing import Any
 
 from ....support.measurement_cache import measured_once, package_hash
+from ..scenes.speed_ups import SpeedUps
 from ..scenes.spheres import NODES, SPHERES, Size
 from .methods import (
     PACKETS,
@@ -72,46 +73,40 @@ class TimesJob:
 
 
 @dataclass(frozen=True, eq=False)
-class Times:
-    """A method; ``frames`` by seed, number of spheres and number of nodes."""
+class Times(SpeedUps):
+    """A method, in seconds; ``frames`` by seed, number of spheres and number of nodes.  Times are
+    the mean of all seeds."""
 
-    method: str
+    name: str
     frames: Sequence[Sequence[Sequence[Frame]]]
 
     def of(self, spheres: int, nodes: int) -> list[Frame]:
         """Of each seed."""
         return [each[SPHERES.index(spheres)][NODES.index(nodes)] for each in self.frames]
 
-    def seconds(self, spheres: int, nodes: int) -> float:
-        """The mean."""
+    def time(self, spheres: int, nodes: int) -> float:
         return mean(frame.seconds for frame in self.of(spheres, nodes))
 
-    def speed_up(self, spheres: int, nodes: int) -> float:
-        """Of the mean times, against one node by the same method."""
-        return self.seconds(spheres, 1) / self.seconds(spheres, nodes)
+    def merging(self, spheres: int, nodes: int) -> float:
+        return mean(frame.seconds - frame.drawn for frame in self.of(spheres, nodes))
 
-    def efficiency(self, spheres: int, nodes: int) -> float:
-        """Speed-up over nodes."""
-        return self.speed_up(spheres, nodes) / nodes
+    def mean_of(self, field: str, spheres: int, nodes: int) -> float:
+        """Of a field of ``Frame``."""
+        return mean(getattr(frame, field) for frame in self.of(spheres, nodes))
 
-    def curve(self, spheres: int) -> list[float]:
-        """Speed-up along ``NODES``."""
-        return [self.speed_up(spheres, nodes) for nodes in NODES]
+    def balance(self, spheres: int, nodes: int) -> float:
+        """What the nodes are at work of the time until the last one has drawn."""
+        return mean(frame.busy / (nodes * frame.drawn) for frame in self.of(spheres, nodes))
 
     def curves_of_seeds(self, spheres: int) -> list[list[float]]:
         """Speed-up along ``NODES``, of each seed by itself."""
-        return [[one.seconds / other.seconds for other in row] for row in (
-            each[SPHERES.index(spheres)] for each in self.frames) for one in row[:1]]
+        rows = [each[SPHERES.index(spheres)] for each in self.frames]
+        return [[row[0].seconds / frame.seconds for frame in row] for row in rows]
 
-    def spread(self, spheres: int, nodes: int) -> float:
-        """Standard deviation of a seed's time, as a part of the mean."""
-        return pstdev(frame.seconds for frame in self.of(spheres, nodes)) / self.seconds(
-            spheres, nodes)
-
-    @cached_property
-    def fastest(self) -> int:
-        """The number of spheres of the run with the largest speed-up on the most nodes."""
-        return max(SPHERES, key=lambda spheres: self.speed_up(spheres, NODES[-1]))
+    def range_of_seeds(self, spheres: int, nodes: int) -> float:
+        """From the least to the greatest speed-up of a seed, as a part of their mean."""
+        found = [curve[NODES.index(nodes)] for curve in self.curves_of_seeds(spheres)]
+        return (max(found) - min(found)) / mean(found)
 
 
 def times_jobs(size: Size) -> list[TimesJob]:

@@ -1,0 +1,92 @@
+"""What the figures say beyond his claims: sentences, made of the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from .claims import MOST, NEARLY
+from .his_machine.costs import COSTS, MICROSECOND
+from .his_machine.methods import Scene
+from .his_machine.sensitivity import (
+    BYTE,
+    SPHERES,
+    TESSELLATING,
+    Sensitivity,
+    axis_of,
+)
+from .his_machine.times import BROADCAST_STRIPS, LINES, NODE, USUAL_HOST
+from .our_machine.clocks import Clocks
+from .our_machine.in_rtl import Point
+from .scenes.spheres import SPHERES as ALL_SPHERES
+from .scenes.spheres import Size
+
+
+def findings(sensitivity: Sequence[Sensitivity], clocks: Mapping[str, Clocks],
+             points: Sequence[Point], size: Size) -> list[str]:
+    """Of both machines."""
+    return [*_of_his(sensitivity, size), *_of_ours(clocks), *_of_points(points)]
+
+
+def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
+    by_axis = {each.axis: each.speed_up for each in sensitivity}
+    speed, method, axis, place = max(
+        (speed, method, axis, place) for axis, found in by_axis.items()
+        for method in (LINES, BROADCAST_STRIPS) for place, speed in enumerate(found[method]))
+    free = by_axis[TESSELLATING]
+    scene = Scene.of(size, 0, 1)
+    drawing = float(scene.polygon_drawing.sum())
+    meetings = scene.work(MOST, "lines").polygons.sum() / scene.template.polygons
+    share = (1 / NEARLY - 1) / (MOST - 1 / NEARLY)
+    lines = [
+        f"Whatever cost is changed while the others stay, broadcast comes to a speed-up of "
+        f"{speed:.1f} on {MOST} nodes at best: {method}, {axis} {axis_of(axis).values[place]:g} "
+        f"{axis_of(axis).unit}, where node initiated has {by_axis[axis][NODE][place]:.1f} "
+        f"({SPHERES} spheres).",
+        f"If drawing were shared out evenly and nothing else cost anything, a broadcast on {MOST} "
+        f"nodes that is {NEARLY:g} of perfect would need tessellating to take {100 * share:.1f} % "
+        f"of drawing: {share * drawing / scene.template.polygons / MICROSECOND:.1f} µs a polygon, "
+        "where sending a polygon, which takes less, is "
+        f"{COSTS.byte * COSTS.polygon_bytes / MICROSECOND:.0f} µs.  So chapter V's remark on "
+        "forwarded polygons and chapter VI's on broadcast cannot both hold of one renderer.",
+        f"Even where tessellating is all but free ({axis_of(TESSELLATING).values[0]:g} µs) "
+        f"interlaced lines come to a speed-up of {free[LINES][0]:.1f} on {MOST} nodes: a polygon is "
+        f"set up by each node that has a line of it, {meetings:.1f} on average.  Strips come to "
+        f"{free[BROADCAST_STRIPS][0]:.1f}.",
+    ]
+    byte = axis_of(BYTE)
+    usual, tenth = (by_axis[BYTE][NODE][byte.values.index(each)]
+                    for each in (byte.usual, byte.usual / 10))
+    host = by_axis[BYTE][USUAL_HOST]
+    lines.append(
+        f"Merging whole frame buffers at {byte.usual:g} µs a byte is what holds node initiated "
+        f"back: {usual:.1f} on {MOST} nodes, {tenth:.1f} at a tenth of that, which is nearer to the "
+        "2.8 megabytes a second of an iPSC/2's links.  Host initiated would gain little: "
+        f"{host[byte.values.index(byte.usual / 10)]:.1f}.")
+    return lines
+
+
+def _of_ours(clocks: Mapping[str, Clocks]) -> list[str]:
+    spheres = ALL_SPHERES[-1]
+    node, host = clocks["node initiated"], clocks["host initiated, 100"]
+    fastest = min(clocks, key=lambda name: clocks[name].time(spheres, MOST))
+    drawing = host.drawing(spheres, MOST) / node.drawing(spheres, MOST)
+    return [
+        f"Of ours {fastest} draws {spheres:,} spheres on {MOST} nodes in the fewest clocks: "
+        f"{clocks[fastest].time(spheres, MOST):,.0f}, a speed-up of "
+        f"{clocks[fastest].speed_up(spheres, MOST):.1f}.",
+        f"Node initiated draws {drawing:.1f} times as fast as host initiated there, and then "
+        f"merges for {node.merging(spheres, MOST):,.0f} clocks, "
+        f"{100 * node.merging(spheres, MOST) / node.time(spheres, MOST):.0f} % of its frame.",
+        "Made at the controller, triangles come one in three clocks, whatever the number of "
+        "elements, as his host's or his tessellation's: broadcast by lines and host initiated draw "
+        f"in {clocks['broadcast, lines'].drawing(spheres, MOST):,.0f} and "
+        f"{host.drawing(spheres, MOST):,.0f} clocks.",
+    ]
+
+
+def _of_points(points: Sequence[Point]) -> list[str]:
+    if not points:
+        return []
+    worst = max(points, key=lambda point: abs(point.off))
+    return [f"The model is within {100 * abs(worst.off):.2f} % of the {len(points)} frames that "
+            f"were simulated (worst: {worst.decomposition}, {worst.spheres} spheres)."]
