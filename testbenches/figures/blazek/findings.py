@@ -59,7 +59,7 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
     host = by_axis[BYTE][USUAL_HOST]
     lines.append(
         f"Merging whole frame buffers at {byte.usual:g} µs a byte is what holds node initiated "
-        f"back: {usual:.1f} on {MOST} nodes, {tenth:.1f} at a tenth of that, which is nearer to the "
+        f"back: {usual:.1f} on {MOST} nodes, {tenth:.1f} at a tenth of that, nearer to the "
         "2.8 megabytes a second of an iPSC/2's links.  Host initiated would gain little: "
         f"{host[byte.values.index(byte.usual / 10)]:.1f}.")
     return lines
