@@ -8,13 +8,16 @@ from amaranth.lib import data, wiring
 
 from ..golden.specification.card_order import (
     CARD_MODULES,
+    CHAIN_MERGE,
     DIRECT_MERGE,
     FRAME_UNIT,
     MERGE_CARDS,
+    NODE_ENDS,
     SNOOP_MERGE,
 )
 from ..golden.specification.commands import RESPONSE_VALUE_BITS
 from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
+from ..golden.specification.fields.making import NO_OBJECTS
 from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
 from .arithmetic.pipelined_multiplier import PipelinedMultiplier
@@ -51,6 +54,9 @@ from .memory_unit.word_parts import word_parts
 from .merging.drawn_map import DrawnMap
 from .merging.nearest_word import NearestWord
 from .merging.picture_maps import PictureMaps
+from .objects.mesh_memory import MeshMemory
+from .objects.object_reader import ObjectReader
+from .objects.object_setup import ObjectSetup
 from .processing_element.broadcast_queue import BroadcastQueue
 from .processing_element.control import ProcessingElementControl
 from .processing_element.depth_read_back import DepthReadBack
@@ -106,7 +112,8 @@ def _merged_by(letter: str, configuration: MachineConfiguration) -> MachineConfi
         return configuration
     units = "M" * configuration.units
     if letter == DIRECT_MERGE:
-        return replace(configuration, maximum_nodes=2, cards=f"PPD{units}", block=1, skew=False)
+        return replace(configuration, maximum_nodes=2, cards=f"PPD{units}", block=1, skew=False,
+                       **NO_OBJECTS)
     nodes = [f"P{units}"] if configuration.merges_directly else configuration.node_cards
     cards = "".join(cards + letter for cards in nodes)
     if letter == SNOOP_MERGE:
@@ -139,13 +146,33 @@ def _with_regions(configuration: MachineConfiguration) -> MachineConfiguration:
     cards = "2x(PMM)" if min(sizes) > 1 else "2x(PM)"
     return replace(configuration, cards=cards, words=0, maximum_units=0, block=1, skew=False,
                    packet=1, order_bits=0, list_words=0, maximum_nodes=0, allow_orphans=False,
-                   regions=(columns, rows))
+                   regions=(columns, rows), **NO_OBJECTS)
 
 
 def _regions(configuration: MachineConfiguration) -> dict[str, int]:
     """How many there are."""
     regions = configuration.dealt_regions
     return {"columns": regions.columns, "rows": regions.rows}
+
+
+def _of_objects(make: Callable[..., wiring.Component],
+                configuration: MachineConfiguration) -> wiring.Component:
+    """What only machines have that make triangles of objects."""
+    return make(configuration=_with_objects(configuration))
+
+
+def _with_objects(configuration: MachineConfiguration) -> MachineConfiguration:
+    """The configuration with objects; where it takes none, with nodes that make them, and room for
+    some."""
+    if configuration.objects is not None:
+        return configuration
+    if configuration.regions is not None:
+        configuration = replace(configuration, regions=None, slots=0, words=0, balance="clocks",
+                                balancer="host")
+    nodes = (configuration if configuration.merge in NODE_ENDS
+             else _merged_by(CHAIN_MERGE, configuration))
+    return replace(nodes, setup="hardware", list_words=0, objects="nodes", mesh_triangles=256,
+                   meshes=16)
 
 
 def _packing(configuration: MachineConfiguration) -> dict[str, int]:
@@ -196,7 +223,10 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "merge_sorter": partial(_dealt, lambda configuration: MergeSorter(
         items=configuration.dealt_regions.count, weight_bits=RESPONSE_VALUE_BITS,
         label=region_shape(**_regions(configuration)))),
+    "mesh_memory": partial(_of_objects, MeshMemory),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
+    "object_reader": partial(_of_objects, ObjectReader),
+    "object_setup": partial(_of_objects, ObjectSetup),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),
                                                       lanes=depth_lanes(c)),
     "one_port_lane": lambda c: OnePortLane(**memory_bus_bits(c)),

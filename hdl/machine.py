@@ -137,10 +137,11 @@ class Machine(wiring.Component):
 
     @property
     def storages(self):
-        """Every RAM whose contents outlast a frame: of memory and frame units, and of lists."""
+        """Every RAM whose contents outlast a frame: of memory and frame units, of lists and
+        meshes."""
         lists = (self.processing_elements if self.configuration.merges_directly
                  else self.merge_cards)
-        boards = [*self.memory_units, *self.frame_units, *lists]
+        boards = [*self.memory_units, *self.frame_units, *lists, self.controller]
         return [storage for board in boards for storage in board.storages]
 
     def elaborate(self, platform):

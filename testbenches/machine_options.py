@@ -22,6 +22,7 @@ from ..golden.specification.configuration import (
     Queue,
 )
 from ..golden.specification.errors import InputError
+from ..golden.specification.fields.making import Objects
 from ..golden.specification.fixed_point import check_max_error, on_screen_fraction_bits
 from ..golden.specification.regions import Balancer
 
@@ -77,6 +78,11 @@ class MachineOptions:
                           the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
 
+    ``objects``           where the machine makes the triangles of a scene's objects: ``nodes``,
+                          ``controller`` or ``elements``; None has the host send triangles
+    ``mesh_triangles``    triangles that a mesh memory holds, else as many as the scene needs
+    ``meshes``            meshes that it can tell apart, likewise
+
     How a mesh is looked at; a display list can be asked for none of it:
 
     ``view``              azimuth and elevation of the eye in degrees
@@ -107,6 +113,9 @@ class MachineOptions:
     slots: int | None = None
     balance: Policy | None = None
     balancer: Balancer | None = None
+    objects: Objects | None = None
+    mesh_triangles: int | None = None
+    meshes: int | None = None
     view: tuple[float, float] | None = None
     zoom: float | None = None
     background: tuple[int, int, int] | None = None
@@ -134,6 +143,8 @@ class MachineOptions:
             settled["balance"] = counted_by(self.balance)
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
+        if self.objects is not None:  # nobody else can set up what the machine makes
+            settled |= SETUPS["fast"]
         if self.setup is not None:
             settled |= SETUPS[self.setup]
         if self.shading != "auto":
@@ -224,6 +235,9 @@ def machine_without_scene(options: MachineOptions) -> MachineConfiguration:
     if options.retain and options.list_words is None:
         raise InputError("--retain: without a scene nobody knows how many triangles its lists "
                          "hold; give --list-words, or a scene")
+    if options.objects is not None and None in (options.mesh_triangles, options.meshes):
+        raise InputError("--objects: without a scene nobody knows how many triangles its meshes "
+                         "have; give --mesh-triangles and --meshes, or a scene")
     looking = options.looking()
     if looking != MachineOptions().looking():
         [name] = [name for name in ("view", "zoom", "background", "cull", "light")

@@ -15,13 +15,14 @@ ROOT = Path(__file__).parent.parent
 #: The wings of each folder, from the bottom to the top: each imports only from those before it.
 WINGS = {
     "golden": (
-        "specification", "organisations", "scenes", "reference", "balancing", "merging",
+        "specification", "organisations", "scenes", "reference", "objects", "balancing", "merging",
         "planning", "cycles", "hard_cases", "scene_argument", "scene_display_list",
         "precision"),
     "hdl": (
-        "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "rasteriser",
-        "regions", "depth_test", "merging", "memory_unit", "processing_element", "lines_to_all",
-        "balancing", "controller", "video", "nodes", "snooping", "direct", "machine",
+        "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "objects",
+        "rasteriser", "regions", "depth_test", "merging", "memory_unit", "processing_element",
+        "lines_to_all", "balancing", "controller", "video", "nodes", "snooping", "direct",
+        "machine",
         "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
@@ -33,8 +34,8 @@ ORDER = list(WINGS)
 
 #: What ``hdl`` may import of ``golden``: the numbers and words that both must agree on.
 SHARED_WITH_HDL = {f"golden.specification.{name}" for name in (
-    "activity", "card_order", "commands", "configuration", "interlace", "queues", "ranges",
-    "regions")}
+    "activity", "card_order", "commands", "configuration", "fields.making", "interlace", "queues",
+    "ranges", "regions")}
 
 MOST_FILES = 16
 MOST_LINES = 400

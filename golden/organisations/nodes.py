@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..specification.commands import Fault
+from ..specification.fields.making import NO_OBJECTS
 from .host_broadcast import HostBroadcast
 from .organisation import Bool, Coordinate, Domain, ElementBlock, Int64, Organisation, Resolution
 
@@ -24,7 +25,7 @@ class Nodes(Organisation):
     @cached_property
     def each(self) -> tuple[HostBroadcast, ...]:
         alone: dict[str, Any] = {"allow_orphans": True, "packet": 1, "order_bits": 0,
-                                 "list_words": 0, "maximum_nodes": 0}
+                                 "list_words": 0, "maximum_nodes": 0, **NO_OBJECTS}
         return tuple(HostBroadcast(replace(self.configuration, cards=cards, **alone))
                      for cards in self.configuration.node_cards)
 

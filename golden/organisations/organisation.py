@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..specification.commands import Fault
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
+from .object_shares import ObjectShares
 from .shares import Shares
 
 Bool = NDArray[np.bool_]
@@ -241,7 +242,8 @@ class Organisation(ABC):
 
     def shares(self, display_list: DisplayList) -> Shares:
         """Which node draws each triangle of a display list."""
-        return Shares.of(display_list, self.nodes, self.configuration.packet)
+        kind = ObjectShares if self.configuration.objects == "nodes" else Shares
+        return kind.of(display_list, self.nodes, self.configuration.packet)
 
     @property
     def owned_units(self) -> int:

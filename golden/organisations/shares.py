@@ -57,6 +57,11 @@ class Shares:
             raise ValueError("work is for packets of equal work, and for no others")
 
     @property
+    def items(self) -> int:
+        """What a packet counts: triangles."""
+        return self.triangles
+
+    @property
     def packet_triangles(self) -> int:
         """Triangles in a packet, as a number; not where packets differ."""
         if self.packet == "contiguous":

@@ -18,6 +18,7 @@ from ..specification.fixed_point import (
     on_screen_fraction_bits,
 )
 from .node_plan import check_given, fields_of_nodes, lines_of_nodes, needs_of_nodes
+from .object_needs import fields_of_objects, lines_of_objects, most_of, needs_of_objects
 from .plan_line import PlanLine
 from .scene_needs import SceneNeeds, combined, fewest_sub_bits, scene_needs, with_sub_bits
 
@@ -69,9 +70,15 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
     if not lists:
         raise InputError("display list: none is given; a machine is planned for one at least")
     # Lists may be made anew each time they are asked for.
+    makes = rest.get("objects") is not None
     formats = [({name: getattr(each, name) for name in ("width", "height", "depth_bits")},
-                each.sub_bits, fewest_sub_bits(each), each.flat) for each in lists]
-    pictures, own, fewest, flat = zip(*formats, strict=True)
+                each.sub_bits, fewest_sub_bits(each), each.flat,
+                needs_of_objects(each) if makes else None) for each in lists]
+    pictures, own, fewest, flat, made = zip(*formats, strict=True)
+    objects = most_of(made) if makes else None
+    if objects is not None:
+        rest |= fields_of_objects(objects, rest)
+        fewest = (*fewest, objects.sub_bits)
     picture = pictures[0]
     for name, given in picture.items():
         if rest.pop(name, given) != given:
@@ -111,6 +118,8 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
         fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
                                               max_error))
     lines = _lines(planned, full, needs, max_error)
+    if objects is not None:
+        lines += lines_of_objects(planned, objects)
     if nodes:
         check_given(planned, nodes)
         lines += lines_of_nodes(planned, full, nodes, rest.get("order_bits"))

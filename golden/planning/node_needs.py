@@ -13,14 +13,11 @@ from ..organisations.organisation_of import organisation_of
 from ..organisations.shares import Shares
 from ..reference import bit_true, exact
 from ..reference.triangle_setup import outline
-from ..specification.configuration import (
-    MAXIMUM_ORDER_BITS,
-    MAXIMUM_WORDS,
-    MachineConfiguration,
-)
+from ..specification.configuration import MAXIMUM_ORDER_BITS, MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.errors import InputError
 from ..specification.picture import Picture
+from ..specification.ranges import MAXIMUM_WORDS
 from ..specification.sampling_grid import Grid
 
 
@@ -85,7 +82,7 @@ class NodeNeeds:
             return node_bits
         most = MAXIMUM_ORDER_BITS - node_bits
         if shares.order_bits > most:
-            fewest = -(-shares.triangles // (shares.nodes << most))
+            fewest = -(-shares.items // (shares.nodes << most))
             raise InputError(
                 f"packet: {shares.packet} makes {shares.rounds:,} rounds, at most "
                 f"{1 << most:,} keep ties between nodes in order; take {fewest} at "

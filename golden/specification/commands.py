@@ -44,6 +44,10 @@ class Opcode(IntEnum):
     REGION = 10  # give the next region, row by row, to a processing element; not inside a frame
     READ_REGIONS = 11  # send what was counted of each slot of every processing element
     READ_TABLE = 12  # send the table that the machine has made for the next picture
+    # Only where the machine makes triangles of objects, of which CLEAR_LISTS clears the meshes:
+    MESH = 13  # begin the next mesh, with its box
+    MESH_TRIANGLE = 14  # vertices of the mesh begun last, about its own origin
+    OBJECT = 15  # make and draw the triangles of a mesh, moved and coloured
 
 
 class ResponseKind(IntEnum):
@@ -69,6 +73,9 @@ class ResponseKind(IntEnum):
     FOLLOWED = 17  # times that a depth on its way to the memory took the place of one read there
     REGION_COUNT = 18  # per processing element and slot: its count since the frame start
     TABLE_ENTRY = 19  # per region, row by row: its processing element in the next picture
+    MADE = 20  # per place that makes triangles of objects: those made since the frame start
+    DROPPED = 21  # likewise: triangles that set-up dropped there, which have no pixel
+    FORWARDED = 22  # per processing element that passes objects on: those passed left, and right
 
 
 class Fault(IntEnum):
@@ -78,12 +85,14 @@ class Fault(IntEnum):
     UNITS_UNSUPPORTED = 2  # the number of memory units, or of frame units, is no power of two, or
     # shares that must be equal are not, or frame units do not hold the picture: nothing is drawn
     NODES_DIFFER = 3  # nodes have different numbers of memory units: nothing is drawn
-    LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn
+    LIST_FULL = 4  # a list memory has no room for what was loaded; nothing of the lists is drawn;
+    # likewise of a mesh memory, and of objects
     REGION_TO_NOBODY = 5  # no such processing element, or a region was left out: the table that
     # was there before stays, as with the next three
     REGION_TWICE = 6  # a region that the table has already
     NO_SLOT = 7  # more regions than the processing element has room for
     TABLE_LATE = 8  # a region after the frame start
+    NO_MESH = 9  # an object's mesh was not loaded: it is not drawn
 
 
 def fault_text(value: int) -> str:
@@ -119,6 +128,9 @@ RESPONSE_FIELDS: dict[ResponseKind, Layout] = {
     ResponseKind.FOLLOWED: {"fragments": RESPONSE_VALUE_BITS},
     ResponseKind.REGION_COUNT: {"count": RESPONSE_VALUE_BITS},
     ResponseKind.TABLE_ENTRY: {"element": RESPONSE_VALUE_BITS},
+    ResponseKind.MADE: {"triangles": RESPONSE_VALUE_BITS},
+    ResponseKind.DROPPED: {"triangles": RESPONSE_VALUE_BITS},
+    ResponseKind.FORWARDED: {"left": _HALF, "right": _HALF},
 }
 
 
@@ -172,13 +184,31 @@ def list_word_bits(configuration: MachineConfiguration) -> int:
 
 def triangle_layout(configuration: MachineConfiguration) -> Layout:
     """The body of ``TRIANGLE``: three vertices as in the display list."""
-    vertex: Layout = {
-        "x": configuration.coordinate_bits,
-        "y": configuration.coordinate_bits,
-        "depth": configuration.depth_bits,
-        **dict.fromkeys(CHANNELS, CHANNEL_BITS),
-    }
-    return {**{f"vertex_{corner}": vertex for corner in range(3)},
+    return {**mesh_triangle_layout(configuration), **_round(configuration), **_node(configuration)}
+
+
+def mesh_triangle_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``MESH_TRIANGLE``: three vertices about the mesh's own origin, in the fields of
+    ``TRIANGLE``; in place of colours they have shades."""
+    vertex = _place(configuration) | dict.fromkeys(CHANNELS, CHANNEL_BITS)
+    return {f"vertex_{corner}": vertex for corner in range(3)}
+
+
+def _place(configuration: MachineConfiguration) -> Layout:
+    return {"x": configuration.coordinate_bits, "y": configuration.coordinate_bits,
+            "depth": configuration.depth_bits}
+
+
+def mesh_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``MESH``: its box about its own origin, in sub-pixel units."""
+    return dict.fromkeys(("left", "top", "right", "bottom"), configuration.coordinate_bits)
+
+
+def object_layout(configuration: MachineConfiguration) -> Layout:
+    """The body of ``OBJECT``: which mesh, what is added to each of its vertices modulo their
+    fields, and the colour that its shades modulate."""
+    return {"mesh": configuration.mesh_bits, **_place(configuration),
+            **dict.fromkeys(CHANNELS, CHANNEL_BITS),
             **_round(configuration), **_node(configuration)}
 
 
@@ -202,9 +232,10 @@ def layout_bits(layout: Layout) -> int:
 
 def command_words(configuration: MachineConfiguration) -> int:
     """32-bit words that one command takes in a file."""
+    objects = [] if configuration.objects is None else [object_layout(configuration)]
     bits = BODY_OFFSET + max(layout_bits(layout) for layout in (
         prepared_triangle_layout(configuration), triangle_layout(configuration),
-        frame_start_layout()))
+        frame_start_layout(), *objects))
     return -(-bits // WORD_BITS)
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from .card_order import MAXIMUM_NODES, PROCESSING_ELEMENT, check_cards, check_merging, parse_cards
 from .display_list import Shading, coordinate_bits
 from .errors import InputError
+from .fields.dealing import DealingFields
+from .fields.making import NO_OBJECTS, MakingFields, Objects
 from .fixed_point import MAX_FRACTION_BITS, on_screen_fraction_bits
 from .interlace import (
     MAXIMUM_BLOCK,
@@ -19,20 +21,11 @@ from .interlace import (
     check_squares,
     interlace_for,
 )
-from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, check_whole
-from .regions import (
-    Balance,
-    Balancer,
-    RegionedPicture,
-    Regions,
-    check_region_counts,
-    default_slots,
-    regions_of,
-)
+from .ranges import FORMAT_RANGES, MAXIMUM_SIZE, MAXIMUM_WORDS, check_whole
+from .regions import Balance, Balancer, RegionedPicture
 from .video_timing import VideoTiming, video_timing
-from .widths import Widths, edge_column_bits, edge_fraction_bits, edge_height_bits
+from .widths import edge_column_bits, edge_fraction_bits, edge_height_bits
 
-MAXIMUM_WORDS = 1 << 20  # of one memory unit
 MAXIMUM_SETUP_INTERVAL = 256  # more than any division has steps
 MINIMUM_TAG_BITS = 2  # the pictures shown and drawn, the next one, and none
 MAXIMUM_TAG_BITS = 6
@@ -68,7 +61,7 @@ RANGES = {
 
 
 @dataclass(frozen=True)
-class MachineConfiguration(Widths):
+class MachineConfiguration(MakingFields, DealingFields):
     """What the cards are built for.
 
     ``cards``             card order, left to right, spelled out or as ``4x(PMM)``
@@ -120,6 +113,13 @@ class MachineConfiguration(Widths):
     ``balance``   what a processing element counts of each of its regions, for the next picture's
                   table: ``"triangles"``, ``"clocks"``, or with ``"static"`` nothing
     ``balancer``  who makes that table of the counts: ``"host"``, or the controller, ``"hardware"``
+
+    Where the host sends objects, which are meshes that the machine has, moved:
+
+    ``objects``         where meshes are kept and an object's triangles are made (``Objects``); None
+                        takes triangles only
+    ``mesh_triangles``  triangles of all meshes that a mesh memory holds
+    ``meshes``          how many meshes it can tell apart
 
     The rest is for a machine that is to draw less than every triangle of the guard band;
     ``plan`` says what a scene needs.  Where they are 0, every triangle fits.
@@ -176,6 +176,9 @@ class MachineConfiguration(Widths):
     slots: int = 0
     balance: Balance = "clocks"
     balancer: Balancer = "host"
+    objects: Objects | None = None
+    mesh_triangles: int = 0
+    meshes: int = 0
 
     def __post_init__(self) -> None:
         def fix(name: str, value: Any) -> None:
@@ -193,7 +196,8 @@ class MachineConfiguration(Widths):
         if self.maximum_nodes == 0:
             fix("maximum_nodes", self.nodes)
         if self.order_bits is None:
-            shared = self.nodes > 1 and self.packet not in ONE_PACKET_EACH
+            shared = self.keeps_list_order or (
+                self.nodes > 1 and self.packet not in ONE_PACKET_EACH)
             fix("order_bits", MAXIMUM_ORDER_BITS if shared else self.node_order_bits)
         for name, (low, high) in RANGES.items():
             check_whole(name, getattr(self, name), low, high)
@@ -221,6 +225,7 @@ class MachineConfiguration(Widths):
             fix("slots", self._check_regions())
             fix("words", self.slots << self.slot_bits)
         self._check_dealing()
+        self._check_objects()
         if not self.words:
             full = Interlace(self.units.bit_length() - 1, self.width, self.height,
                              square_bits=self.square_bits, share_bits=self.share_bits,
@@ -257,6 +262,8 @@ class MachineConfiguration(Widths):
                              f"holds {self.nodes} nodes; leave it out, or take {self.nodes}")
         if self.merge is None:
             for name, least in (("list_words", 0), ("order_bits", 0), ("maximum_nodes", 1)):
+                if name == "order_bits" and self.keeps_list_order:
+                    continue
                 if getattr(self, name) != least:
                     raise InputError(f"{name}: {getattr(self, name)} is for cages of nodes, and "
                                      f"{self.cards} has no merge card; end its nodes with one, as "
@@ -269,50 +276,6 @@ class MachineConfiguration(Widths):
                              f"{self.maximum_nodes} nodes; take {self.node_order_bits} at least, "
                              "or 0 where no two nodes tie")
         self._check_queue()
-
-    def _check_dealing(self) -> None:
-        """What only machines have that deal regions out, and of these not all."""
-        for name, known in (("balance", get_args(Balance)), ("balancer", get_args(Balancer))):
-            if getattr(self, name) not in known:
-                raise InputError(f"{name}: {getattr(self, name)!r} is none of {', '.join(known)}")
-        if self.regions is None:
-            for name, default in (("slots", 0), ("balance", "clocks"), ("balancer", "host")):
-                if getattr(self, name) != default:
-                    raise InputError(f"{name}: is for machines that deal regions out; give regions "
-                                     "as well, or leave it out")
-        elif (self.balance, self.balancer) == ("static", "hardware"):
-            raise InputError("balancer: the hardware packs by what is counted, and static counts "
-                             "nothing; take balance triangles or clocks")
-
-    def _check_regions(self) -> int:
-        """The slots of each processing element; ``InputError`` where regions cannot be dealt."""
-        assert self.regions is not None
-        check_region_counts(self.regions)
-        regions, elements = self.dealt_regions, self.processing_elements
-        if self.merge is not None:
-            raise InputError(f"regions: {self.cards} has nodes, which share the triangles; take a "
-                             "cage of one node, such as 4x(PMM)")
-        for name, default in (("block", 1), ("skew", False), ("lines", False)):
-            if getattr(self, name) != default:
-                raise InputError(f"{name}: is settled by the regions; leave it out")
-        inside = self.interlace
-        if max(inside.unit_mask("x") >> regions.x_bits, inside.unit_mask("y") >> regions.y_bits):
-            wide, high = (1 << inside.unit_mask(axis).bit_length() for axis in "xy")
-            raise InputError(f"regions: {1 << regions.x_bits}x{1 << regions.y_bits} pixels do not "
-                             f"spread over {inside.units} memory units; take {wide}x{high} or more")
-        slots = self.slots or default_slots(regions.count, elements)
-        check_whole("slots", slots, 1, regions.count)
-        if slots * elements < regions.count:
-            raise InputError(f"slots: {slots} in each of {elements} processing elements do not "
-                             f"hold {regions.count} regions; take {regions.even_share(elements)} "
-                             "at least")
-        if slots << self.slot_bits > MAXIMUM_WORDS:
-            raise InputError(f"slots: {slots} need {slots << self.slot_bits} words in each memory "
-                             f"unit, at most {MAXIMUM_WORDS}; add memory units or processing "
-                             "elements")
-        if self.words not in (0, slots << self.slot_bits):  # as it is in a copy
-            raise InputError("words: is settled by the regions; leave it out")
-        return slots
 
     def _check_queue(self) -> None:
         if self.queue == "element":
@@ -372,31 +335,7 @@ class MachineConfiguration(Widths):
         those would, one word for each of its pixels."""
         return replace(self, cards="P" + "M" * self.frame_units, words=0, maximum_units=0, block=1,
                        skew=False, lines=False, packet=1, order_bits=0, list_words=0,
-                       maximum_nodes=0, allow_orphans=True)
-
-    @cached_property
-    def dealt_regions(self) -> Regions:
-        """The regions, where there are any."""
-        assert self.regions is not None
-        return regions_of(self.width, self.height, *self.regions)
-
-    @property
-    def slot_bits(self) -> int:
-        """Log2 of the words that a region takes in each unit of its processing element; there a
-        pixel's address is its slot, then its address among these."""
-        regions = self.dealt_regions
-        return regions.x_bits + regions.y_bits - self.share_bits
-
-    @property
-    def element_bits(self) -> int:
-        """Bits of the number of a processing element that regions are dealt to, or of one more
-        than there can be."""
-        return (self.maximum_units >> self.share_bits).bit_length()
-
-    @property
-    def table_bits(self) -> int:
-        """Bits of a slot of a processing element."""
-        return (self.slots - 1).bit_length()
+                       maximum_nodes=0, allow_orphans=True, **NO_OBJECTS)
 
     @property
     def aligned_domains(self) -> bool:

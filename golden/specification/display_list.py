@@ -110,6 +110,12 @@ class DisplayList:
         first, second, third = (self.color[:, vertex] for vertex in range(3))
         return np.array_equal(first, second) and np.array_equal(first, third)
 
+    @property
+    def object_triangles(self) -> NDArray[np.int64] | None:
+        """int64 (objects,): triangles of each object that the list is made of, one after another;
+        None where it is made of triangles."""
+        return None
+
     def chosen(self, triangles: NDArray[np.int64]) -> DisplayList:
         """A list of these triangles, by their numbers, in this order."""
         return replace(self, position=self.position[triangles], depth=self.depth[triangles],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .errors import InputError
 
 MAXIMUM_SIZE = 4096
+MAXIMUM_WORDS = 1 << 20  # of one memory
 
 #: Bits of a colour channel, and of a colour: red in the low bits, then green, blue.
 CHANNEL_BITS = 8

@@ -7,8 +7,10 @@ from ...golden.specification import commands
 from ...golden.specification.configuration import MachineConfiguration
 
 __all__ = [
+    "ObjectOperation",
     "Operation",
     "broadcast_layout",
+    "object_word_layout",
     "outline_layout",
     "planes_layout",
     "prepared_triangle_layout",
@@ -36,6 +38,18 @@ class Operation(enum.Enum, shape=3):
     CLEAR_LISTS = 0  # keep nothing
     # In the place of one that only cages of nodes have, where regions are dealt out.
     READ_REGIONS = 6  # send your count of each slot since the last frame start
+    # In the place of one that only cages with lists have, where triangles are made of objects.
+    MAKE = 7  # one of ObjectOperation
+
+
+class ObjectOperation(enum.Enum, shape=3):
+    """What is said to those who make triangles of objects, beside an ``Operation``."""
+
+    CLEAR = 0  # forget all meshes
+    MESH = 1  # begin the next one
+    MESH_TRIANGLE = 2  # it has this one
+    OBJECT = 3  # make, set up and draw the triangles of one
+    TRIANGLE = 4  # set up and draw this one, as it is in the display list
 
 
 def struct_layout(layout: commands.Layout) -> data.StructLayout:
@@ -90,10 +104,29 @@ def planes_layout(configuration: MachineConfiguration) -> data.StructLayout:
 
 
 def broadcast_layout(configuration: MachineConfiguration) -> data.StructLayout:
-    """One broadcast word: an operation and its body."""
+    """One broadcast word: an operation and its body; ``make`` only where boards that hear it make
+    triangles of objects."""
+    made = configuration.objects in ("nodes", "elements")
     return data.StructLayout({
         "operation": Operation,
-        "body": data.UnionLayout({"draw": prepared_triangle_layout(configuration)}),
+        "body": data.UnionLayout({
+            "draw": prepared_triangle_layout(configuration),
+            **({"make": object_word_layout(configuration)} if made else {}),
+        }),
+    })
+
+
+def object_word_layout(configuration: MachineConfiguration) -> data.StructLayout:
+    """What is said to those who make triangles of objects: an operation, and its body as in the
+    command of that name."""
+    return data.StructLayout({
+        "operation": ObjectOperation,
+        "body": data.UnionLayout({
+            "mesh": struct_layout(commands.mesh_layout(configuration)),
+            "mesh_triangle": struct_layout(commands.mesh_triangle_layout(configuration)),
+            "object": struct_layout(commands.object_layout(configuration)),
+            "triangle": struct_layout(commands.triangle_layout(configuration)),
+        }),
     })
 
 

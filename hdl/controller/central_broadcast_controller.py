@@ -90,9 +90,10 @@ class CentralBroadcastController(wiring.Component):
         self.configuration = configuration
         self.tags = FrameTags(tag_bits=configuration.tag_bits, frame_units=configuration.snoops)
         self._setup = (TriangleSetup(configuration=configuration)
-                       if configuration.setup == "hardware" else None)
+                       if configuration.controller_sets_up else None)
         self._nodes = merge_control(configuration)
-        self._packet = Signal(broadcast_layout(configuration), name="packet")
+        self.storages = self._nodes.storages  # RAMs whose contents outlast a frame
+        self.packet = Signal(broadcast_layout(configuration), name="packet")
         # Clocks since reset and since the frame start, scans since the frame start.
         self._cycles = Signal(commands.RESPONSE_VALUE_BITS, name="cycles")
         self.frame_cycles = Signal(commands.RESPONSE_VALUE_BITS, name="frame_cycles")
@@ -128,7 +129,7 @@ class CentralBroadcastController(wiring.Component):
         m = Module()
         if self.configuration.node_bits:
             m.d.comb += self.right.node.eq(0)
-        m.d.comb += self.broadcast.packet.eq(self._packet)
+        m.d.comb += self.broadcast.packet.eq(self.packet)
         self._count(m)
         self._picture(m)
         self._count_owned(m)
@@ -201,7 +202,7 @@ class CentralBroadcastController(wiring.Component):
 
     def announce(self, m, operation, then=None, *, when=1):
         """Strobe the packet as soon as all are ready."""
-        m.d.comb += self._packet.operation.eq(operation)
+        m.d.comb += self.packet.operation.eq(operation)
         with m.If(self.broadcast.ready & when):
             m.d.comb += self.broadcast.strobe.eq(1)
             if then is not None:
@@ -236,7 +237,7 @@ class CentralBroadcastController(wiring.Component):
         m.submodules.setup = setup
         m.d.comb += [setup.total.eq(self.total), setup.vertices.payload.eq(self.body)]
         with m.If(setup.triangles.valid):
-            m.d.comb += [self._packet.body.draw.eq(setup.triangles.payload),
+            m.d.comb += [self.packet.body.draw.eq(setup.triangles.payload),
                          setup.triangles.ready.eq(self.broadcast.ready)]
             operation = Operation.DRAW
             if self.configuration.list_words:
@@ -249,7 +250,7 @@ class CentralBroadcastController(wiring.Component):
     def _observe(self, m):
         offered = self.commands.valid & ((self.opcode == Opcode.TRIANGLE)
                                          | (self.opcode == Opcode.PREPARED_TRIANGLE))
-        m.d.comb += self.more.eq(offered | (0 if self._setup is None else self._setup.busy))
+        m.d.comb += self.more.eq(offered | self._nodes.setting_up(self, self._setup))
 
     # The states.
 
@@ -317,7 +318,7 @@ class CentralBroadcastController(wiring.Component):
     def _hold_to_picture(self, m):
         """The packet is the offered prepared triangle, without rows past the picture."""
         layout = prepared_triangle_layout(self.configuration)
-        offered, draw = data.View(layout, self.body[:layout.size]), self._packet.body.draw
+        offered, draw = data.View(layout, self.body[:layout.size]), self.packet.body.draw
         heights = {picture.height for picture in self.configuration.pictures()}
         m.d.comb += draw.eq(offered)
         if min(heights) == (1 << self.configuration.y_bits) - 1:

@@ -9,6 +9,7 @@ from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..merging.tree_words import TreeLines
 from .balanced_regions import BalancedRegions
+from .making_objects import making
 from .node_control import NodeControl
 from .one_node import OneNode
 from .region_node import RegionNode
@@ -135,7 +136,9 @@ def merge_control(configuration: MachineConfiguration) -> OneNode:
         return DirectControl(configuration=configuration)
     if configuration.snoops:
         return SnoopControl(configuration=configuration)
+    kind: type[OneNode] = OneNode
     if configuration.regions is not None:
         kind = RegionNode if configuration.balancer == "host" else BalancedRegions
-        return kind(configuration=configuration)
-    return OneNode()
+    if configuration.objects == "controller":
+        kind = making(kind)
+    return kind(configuration=configuration)

@@ -8,6 +8,7 @@ from ...golden.specification import commands
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.words import Operation, response_fields, response_layout
+from .object_commands import ObjectCommands
 from .one_node import OneNode
 from .presenter import Presenter
 
@@ -31,6 +32,8 @@ class NodeControl(OneNode):
         self.configuration = configuration
         ahead = configuration.list_words or configuration.snoops
         self.presenter = Presenter() if ahead else None
+        self._objects = (ObjectCommands(configuration=configuration)
+                         if configuration.objects is not None else None)
         #: Memory units of all nodes, and what is wrong with them.
         self.units = Signal(commands.RESPONSE_VALUE_BITS, name="node_units")
         self.unsupported = Signal(name="node_unsupported")
@@ -41,7 +44,7 @@ class NodeControl(OneNode):
     def members(self):
         configuration = self.configuration
         return {"nodes": In(configuration.node_bits),
-                **({"lists_full": In(1)} if configuration.list_words else {})}
+                **({"lists_full": In(1)} if configuration.reports_full else {})}
 
     after_units = "REPORT_NODES"
     #: The state after the report of the nodes.
@@ -192,6 +195,8 @@ class NodeControl(OneNode):
     def commands(self, m, controller):
         if self.configuration.list_words:
             self._draw_lists(m, controller)
+        if self._objects is not None:
+            self._objects.commands(m, controller)
 
     def _draw_lists(self, m, controller):
         for opcode, full in ((Opcode.CLEAR_LISTS, C(0)),
@@ -208,3 +213,5 @@ class NodeControl(OneNode):
         if self.configuration.list_words:
             with m.State("LIST_FULL"):
                 controller.respond(m, ResponseKind.ERROR, Fault.LIST_FULL, "COMMAND")
+        if self._objects is not None:
+            self._objects.states(m, controller)

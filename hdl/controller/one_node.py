@@ -5,7 +5,8 @@ from typing import ClassVar
 from amaranth.hdl import *
 from amaranth.lib import wiring
 
-from ...golden.specification.commands import Fault, ResponseKind
+from ...golden.specification.commands import Fault, Opcode, ResponseKind
+from ...golden.specification.configuration import MachineConfiguration
 
 __all__ = ["OneNode"]
 
@@ -19,9 +20,14 @@ class OneNode:
 
     members: ClassVar[dict[str, wiring.Member]] = {}
     #: Commands that are not the controller's own.
-    opcodes = ()
+    opcodes: ClassVar[tuple[Opcode, ...]] = ()
+    #: RAMs whose contents outlast a frame.
+    storages = ()
     #: The state after the report of the units.
     after_units = "CHECK_UNITS"
+
+    def __init__(self, *, configuration: MachineConfiguration):
+        self.configuration = configuration
 
     def add_to(self, m, controller):
         """What goes on beside the commands."""
@@ -33,6 +39,10 @@ class OneNode:
     def in_turn(self, controller, ready):
         """The offered command may be taken, if it is ``ready`` otherwise."""
         return ready
+
+    def setting_up(self, controller, setup):
+        """Triangles are being set up, in the controller's own ``setup`` where it has one."""
+        return 0 if setup is None else setup.busy
 
     def all_units(self, controller):
         """Memory units in the cage."""

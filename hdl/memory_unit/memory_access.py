@@ -7,9 +7,9 @@ from amaranth.lib.wiring import In, Out
 from ...golden.specification.configuration import (
     MAXIMUM_ORDER_BITS,
     MAXIMUM_TAG_BITS,
-    MAXIMUM_WORDS,
     MINIMUM_TAG_BITS,
 )
+from ...golden.specification.ranges import MAXIMUM_WORDS
 from .word_parts import PARTS, Part, part_layout, value_bits
 
 __all__ = ["MAXIMUM_DEPTH_BITS", "MemoryAccess", "part_address", "part_answer", "part_asked",

@@ -4,7 +4,7 @@ from amaranth.hdl import *
 from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from ...golden.specification.configuration import MAXIMUM_WORDS
+from ...golden.specification.ranges import MAXIMUM_WORDS
 
 __all__ = ["ListMemory"]
 

@@ -51,8 +51,13 @@ class NodeGate(wiring.Component):
             "number": In(configuration.node_bits),
             "broadcast": In(BroadcastLines(configuration)),
             "own": Out(BroadcastLines(configuration)),
-            **({"lists_full": Out(1)} if configuration.list_words else {}),
+            **self.members,
         })
+
+    @property
+    def members(self) -> dict[str, wiring.Member]:
+        """Those that not every gate has."""
+        return {"lists_full": Out(1)} if self.configuration.list_words else {}
 
     @property
     def storages(self):

@@ -40,7 +40,7 @@ def connect_nodes(m: Module, configuration: MachineConfiguration, controller, ge
         fixed.d.comb += [board.total.eq(node.merge_card.left.id) for board in boards]
         connect_broadcast(wires(m, f"node_{number}_broadcast_wires"), node.merge_card.own,
                           [element.broadcast for element in node.processing_elements])
-    if configuration.list_words:
+    if configuration.reports_full:
         fixed.d.comb += controller.lists_full.eq(reduce(or_, (card.lists_full for card in cards)))
     if configuration.sends_drawn:
         connect_tree(m, controller, generator, nodes)

@@ -220,7 +220,8 @@ class TriangleSetup(wiring.Component):
 
     def _share(self, triangle):
         """Where round and node are, in that order."""
-        return [*([triangle.planes.round] if self.configuration.order_bits else []), triangle.node]
+        return [*([triangle.planes.round] if self.configuration.round_bits else []),
+                *([triangle.node] if self.configuration.node_bits else [])]
 
     def _collect(self, m, outline, enter, pop):
         """Queues of all results; when each has its part they are popped into the output register.

@@ -15,13 +15,13 @@ from ...golden.planning.presets import PRESETS
 from ...golden.specification.card_order import CARD_NAMES
 from ...golden.specification.configuration import (
     MAXIMUM_PACKET,
-    MAXIMUM_WORDS,
     ONE_PACKET_EACH,
     QUEUE_RANGE,
     RANGES,
 )
+from ...golden.specification.fields.making import MAXIMUM_MESHES, Objects
 from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
-from ...golden.specification.ranges import MAXIMUM_SIZE
+from ...golden.specification.ranges import MAXIMUM_SIZE, MAXIMUM_WORDS
 from ...golden.specification.regions import MAXIMUM_REGIONS, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
 from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
@@ -246,6 +246,22 @@ _DEALING_OPTIONS = (
                  "[default: host]"),
 )
 
+#: Objects, of which the machine makes triangles.
+_OBJECT_OPTIONS = (
+    click.option("--objects", type=click.Choice(get_args(Objects)),
+                 help="Of an orthographic scene file: load its meshes into the machine, send its "
+                 "objects, and have their triangles made there: by each node, for its share of the "
+                 "objects, once by the controller, or by elements that pass objects on to each "
+                 "other.  --setup is fast then, if nothing is said.  [default: the host sends "
+                 "triangles]"),
+    click.option("--mesh-triangles", type=click.IntRange(1, MAXIMUM_WORDS), metavar="N",
+                 help="With objects: triangles that each mesh memory holds.  [default: what the "
+                 "scene needs]"),
+    click.option("--meshes", type=click.IntRange(1, MAXIMUM_MESHES), metavar="N",
+                 help="With objects: meshes that it can tell apart.  [default: what the scene "
+                 "needs]"),
+)
+
 #: In place of these where there are several cages.
 _SEVERAL_CARDS_OPTION = click.option(
     "--cards", multiple=True, metavar="CARDS",
@@ -261,7 +277,7 @@ def machine_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that choose a machine."""
     return _with(command, (_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS, *_FURTHER_OPTIONS,
                            _RETAIN_OPTION, *_NODE_OPTIONS, _REGIONS_OPTION, *_DEALING_OPTIONS,
-                           *_VIEW_OPTIONS))
+                           *_OBJECT_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -269,7 +285,7 @@ def machine_options_of_cages(command: Callable[..., Any]) -> Callable[..., Any]:
     asked for, all else is for each of them."""
     return _with(command, (_SEVERAL_CARDS_OPTION, *_CAGE_OPTIONS, *_PRECISION_OPTIONS,
                            *_FURTHER_OPTIONS, _RETAIN_OR_NOT_OPTION, *_NODE_OPTIONS,
-                           *_DEALING_OPTIONS, *_VIEW_OPTIONS))
+                           *_DEALING_OPTIONS, *_OBJECT_OPTIONS, *_VIEW_OPTIONS))
 
 
 def machine_options_of_any_precision(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -13,7 +13,12 @@ from ...golden.merging.cage import merge_cage
 from ...golden.merging.traffic import Traffic
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
-from ...golden.specification.card_order import DIRECT_MERGE, merge_card, parse_cards
+from ...golden.specification.card_order import (
+    DIRECT_MERGE,
+    NODE_ENDS,
+    merge_card,
+    parse_cards,
+)
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
@@ -75,7 +80,19 @@ class Cage:
                        list_words=asked.list_words if self.retained else None,
                        regions=self.regions, **dealing,
                        packet=None if merge is None else asked.packet,
-                       queue=asked.queue if merge == DIRECT_MERGE else None)
+                       queue=asked.queue if merge == DIRECT_MERGE else None,
+                       **self._objects(asked, merge))
+
+    def _objects(self, asked: MachineOptions, merge: str | None) -> dict[str, Any]:
+        """Where this cage makes the triangles of objects, as is asked; another kind of cage is sent
+        triangles, which are set up by the same means."""
+        fits = asked.objects is not None and not self.retained and {
+            "nodes": merge in NODE_ENDS, "controller": merge is None,
+            "elements": merge is None and self.regions is not None}[asked.objects]
+        fields: dict[str, Any] = {name: getattr(asked, name) if fits else None
+                                  for name in ("objects", "mesh_triangles", "meshes")}
+        setup = asked.setup or (None if asked.objects is None else "fast")
+        return fields | {"setup": setup}
 
 
 @dataclass(frozen=True)

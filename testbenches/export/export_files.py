@@ -14,6 +14,7 @@ from typing import Any
 from ...golden.specification.card_order import CARD_MODULES, MERGING_CARDS
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
+from ...golden.specification.fields.making import NO_OBJECTS
 from ..machine_options import (
     MachineOptions,
     machine_for_scene,
@@ -23,6 +24,9 @@ from ..machine_options import (
 )
 from ..support.any_characters import readable
 from ..support.atomic_output import atomic_file, output_errors
+
+#: Fields that the Verilog's header tells only of machines that have what they ask for.
+_SAID_WHERE_ON = ("lines", *NO_OBJECTS)
 
 #: What can be exported alone: the boards, then their parts (``hdl.components``, which loads
 #: Amaranth and so is not asked here).
@@ -169,7 +173,8 @@ def _header(configuration: MachineConfiguration, options: MachineOptions, scene:
     words = ["cardcage export", *([_scene_name(scene)] if scene is not None else []),
              *option_words(options), *(["--component", component] if component else [])]
     built = ", ".join(f"{field.name} {getattr(configuration, field.name)}"
-                      for field in fields(configuration) if field.name != "timing")
+                      for field in fields(configuration) if field.name != "timing"
+                      and (field.name not in _SAID_WHERE_ON or getattr(configuration, field.name)))
     paragraphs = [
         f"Cardcage {version('cardcage')}: {component or 'machine'}, made by",
         "  " + " ".join(" ".join(words).split()),

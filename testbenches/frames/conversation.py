@@ -105,6 +105,8 @@ def _silent(organisation: Organisation) -> list[Opcode]:
         silent.append(Opcode.TRIANGLE)
     if configuration.list_words:
         silent += [Opcode.LOAD, Opcode.DRAW_LISTS, Opcode.CLEAR_LISTS]
+    if configuration.objects is not None:  # of meshes that were loaded
+        silent += [Opcode.CLEAR_LISTS, Opcode.MESH, Opcode.MESH_TRIANGLE, Opcode.OBJECT]
     if configuration.regions is not None and configuration.balancer == "host":
         silent.append(Opcode.REGION)  # of a table as it should be
     return silent
@@ -129,6 +131,10 @@ def _counters(organisation: Organisation) -> list[Owed]:
     for node in organisation.each:
         owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * len(node.domains)
         owed += [Owed(ResponseKind.SENT)] * (organisation.merges and not direct)
+        if organisation.configuration.objects == "nodes":
+            owed += [Owed(ResponseKind.MADE), Owed(ResponseKind.DROPPED)]
+    if organisation.configuration.objects == "controller":
+        owed += [Owed(ResponseKind.MADE), Owed(ResponseKind.DROPPED)]
     units = organisation.memory_units if direct else 0
     return owed + [Owed(ResponseKind.TAKEN), Owed(ResponseKind.FOLLOWED)] * units
 

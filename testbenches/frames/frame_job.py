@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.cycles.frame_clocks import most_frame_clocks
+from ...golden.objects.object_words import frame_words, made_of_objects, mesh_words
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference import triangle_words
@@ -28,7 +29,8 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
                    table: NDArray[np.int64] | None = None) -> list[int]:
     """Frame start, triangles, frame end; where nodes have list memories, these are loaded first,
     and drawn in the triangles' place; before the frame the ``table`` by which regions are dealt
-    out, unless it is that of the frame before.
+    out, unless it is that of the frame before; where the machine makes triangles of objects, its
+    meshes are loaded first, and objects come in the triangles' place.
 
     Triangles come in the order in which nodes share them.
     Where the machine has no set-up of its own the host does it here, at the resolution that the
@@ -44,15 +46,25 @@ def frame_commands(configuration: MachineConfiguration, display_list: DisplayLis
         raise InputError(f"cards: {configuration.cards}: such a machine boots and draws nothing, "
                          f"fault {int(fault)} ({fault.name}); put as many memory units into each "
                          "node, a power of two")
+    dealing = [] if table is None else table_commands(configuration, table)
+    if configuration.objects is not None and fraction_bits is None:
+        return [*dealing, *object_commands(configuration, fitted(configuration, display_list))]
     triangles = _triangle_words(configuration, display_list, fraction_bits)
     start, end = commands.frame_start(display_list.background), commands.command(Opcode.FRAME_END)
     vertices = configuration.setup == "hardware"
     if not configuration.list_words or (vertices and fraction_bits is not None):
-        dealing = [] if table is None else table_commands(configuration, table)
         return [*dealing, start, *triangles, end]
     clear, draw = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.DRAW_LISTS))
     loads = [commands.with_opcode(word, Opcode.LOAD) for word in triangles]
     return [clear, *loads, start, draw, end]
+
+
+def object_commands(configuration: MachineConfiguration, display_list: DisplayList) -> list[int]:
+    """All meshes, after others are forgotten, and a frame of objects."""
+    meshes = mesh_words(configuration, made_of_objects(display_list).objects)
+    return [commands.command(Opcode.CLEAR_LISTS), *meshes,
+            commands.frame_start(display_list.background),
+            *frame_words(configuration, display_list), commands.command(Opcode.FRAME_END)]
 
 
 def _triangle_words(configuration: MachineConfiguration, display_list: DisplayList,
@@ -96,5 +108,5 @@ def frame_job(
         memory_seed=memory_seed,
         stall_seed=stall_seed,
         waveform=waveform,
-        maximum_cycles=most_frame_clocks(configuration, len(words)),
+        maximum_cycles=most_frame_clocks(configuration, max(len(words), display_list.triangles)),
     )

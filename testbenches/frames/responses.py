@@ -58,6 +58,9 @@ class Simulation:
     ``taken``            fragments that each memory unit took from all processing elements, in its
                          own count; empty where it belongs to one
     ``followed``         those of them whose pixel a fragment just ahead of them was to change
+    ``made``             triangles that each place made of objects, in its own count; empty where
+                         none does
+    ``dropped``          of these, and of those that came there as vertices, what set-up dropped
     ``slot_counts``      int64 (elements, slots): what each processing element counted of its
                          regions; None where that was not read
     ``next_table``       int64 (regions,): the table that the machine has made for the next picture;
@@ -87,6 +90,8 @@ class Simulation:
     sent: Sequence[int] = ()
     taken: Sequence[int] = ()
     followed: Sequence[int] = ()
+    made: Sequence[int] = ()
+    dropped: Sequence[int] = ()
     slot_counts: NDArray[np.int64] | None = None
     next_table: NDArray[np.int64] | None = None
 
@@ -106,6 +111,8 @@ class Answers:
     ``taken``      int64 (readings, units): fragments, of cages whose elements have all units
                    together
     ``followed``   int64 (readings, units): likewise
+    ``made``       int64 (readings, places): triangles made of objects, where some are
+    ``dropped``    int64 (readings, places): likewise, triangles that set-up dropped
     ``slot_counts``  int64 (readings, elements, slots): what was counted of regions, as often as
                    that was read
     ``tables``     int64 (readings, regions): tables that the machine made, likewise
@@ -136,9 +143,10 @@ class Answers:
         self.fragments, self.busy = (
             np.array(self._values[kind], np.int64).reshape(-1, len(self._domains))
             for kind in (ResponseKind.FRAGMENTS, ResponseKind.BUSY))
-        self.sent, self.taken, self.followed = (
+        self.sent, self.taken, self.followed, self.made, self.dropped = (
             np.array(self._values[kind], np.int64).reshape(len(self.fragments), -1)
-            for kind in (ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED))
+            for kind in (ResponseKind.SENT, ResponseKind.TAKEN, ResponseKind.FOLLOWED,
+                         ResponseKind.MADE, ResponseKind.DROPPED))
         if configuration.merges_directly:
             self.sent = self.fragments
         self.slot_counts = np.array(self._values[ResponseKind.REGION_COUNT], np.int64).reshape(
@@ -179,6 +187,8 @@ class Answers:
             sent=self.sent[reading].tolist() if read else [],
             taken=self.taken[reading].tolist() if read else [],
             followed=self.followed[reading].tolist() if read else [],
+            made=self.made[reading].tolist() if read else [],
+            dropped=self.dropped[reading].tolist() if read else [],
             slot_counts=self.slot_counts[counted] if read and len(self.slot_counts) else None,
             next_table=self.tables[counted] if read and len(self.tables) else None,
             owned=units["owned"],

@@ -30,6 +30,7 @@ MACHINES: dict[str, dict[str, Any]] = {
     "not square": {"cards": "PPMMMPM", "width": 6, "height": 5, "shading": "flat"},
     "coarser": {"cards": "PMM", "width": 9, "height": 7, "words": 10},
     "squares": {"cards": "2x(PMM)", "width": 9, "height": 8, "block": 2},
+    "lines": {"cards": "2x(PMM)", "width": 7, "height": 8, "lines": True},
     "skew": {"cards": "2x(PMM)", "width": 8, "height": 8, "skew": True},
     "two ports": {"cards": "MMPMPM", "width": 8, "height": 8, "memory_ports": 2,
                   "allow_orphans": True},

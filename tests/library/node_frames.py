@@ -104,10 +104,10 @@ def redrawn(configuration, display_list):
     return [start, DRAW_LISTS, end]
 
 
-def run(configuration, words, engine, *, memory_seed=3, stall_seed=None):
-    """Whatever a machine answers to ``words``."""
+def run(configuration, words, engine, *, memory_seed=3, stall_seed=None, extra=0):
+    """Whatever a machine answers to ``words``; ``extra``: faults that it answers besides."""
     return engine.run(Job(
-        configuration, words, responses_owed(organisation_of(configuration), words),
+        configuration, words, responses_owed(organisation_of(configuration), words) + extra,
         memory_seed=memory_seed, stall_seed=stall_seed,
         maximum_cycles=200 * len(words) + 400 * configuration.cycles_per_scan * (
             1 + words.count(READ_DEPTH))))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...specification.display_list import DisplayList
+from ...specification.errors import InputError
 from ...specification.fixed_point import modulated
 from ..mesh_display_list import display_list_of_corners, facing
 from ..quantise import PictureFormat
@@ -71,17 +73,47 @@ class ObjectList:
         return np.asarray(((place + low[self.mesh] < -band)
                            | (place + high[self.mesh] >= band)).any(axis=1))
 
-    def display_list(self) -> DisplayList:
+    def in_sub_bits(self, sub_bits: int) -> ObjectList:
+        """The same objects in units of ``2**-sub_bits`` pixel.  ``InputError`` where a vertex of a
+        mesh or an offset would move."""
+        more = sub_bits - self.picture.sub_bits
+        if more == 0:
+            return self
+        if sub_bits < (needed := self.fewest_sub_bits):
+            raise InputError(f"objects: sub_bits {needed}, the machine is built for {sub_bits}: "
+                             "export a machine for this scene")
+
+        def moved(steps: Int64) -> Int64:
+            return steps << more if more > 0 else steps >> -more
+
+        offset = self.offset.copy()
+        offset[:, :2] = moved(offset[:, :2])
+        return replace(self, picture=replace(self.picture, sub_bits=sub_bits), offset=offset,
+                       meshes=tuple(replace(mesh, position=moved(mesh.position))
+                                    for mesh in self.meshes))
+
+    @property
+    def fewest_sub_bits(self) -> int:
+        """Sub-pixel bits that are left, at least one, when the coordinates of meshes and offsets
+        are all halved while even."""
+        steps = [self.offset[:, :2], *(mesh.position for mesh in self.meshes)]
+        together = int(np.bitwise_or.reduce([np.bitwise_or.reduce(each, axis=None, initial=0)
+                                             for each in steps]))
+        zeros = ((together & -together).bit_length() - 1 if together
+                 else self.picture.sub_bits)
+        return self.picture.sub_bits - min(zeros, self.picture.sub_bits - 1)
+
+    def display_list(self) -> ObjectDisplayList:
         """All triangles, one after another."""
         none = (np.zeros((0, 3, 2), np.int64), np.zeros((0, 3), np.int64),
                 np.zeros((0, 3, 3), np.int64))
-        position, depth, color = map(np.concatenate, zip(none, *(
-            self._triangles(number, clipped)
-            for number, clipped in enumerate(self.clipped.tolist())), strict=True))
-        return DisplayList(
+        each = [self._triangles(number, clipped)
+                for number, clipped in enumerate(self.clipped.tolist())]
+        position, depth, color = map(np.concatenate, zip(none, *each, strict=True))
+        return ObjectDisplayList(
             self.picture.width, self.picture.height, position.astype(np.int32), depth,
             color.astype(np.uint8), self.picture.sub_bits, self.picture.depth_bits,
-            self.background)
+            self.background, self, np.array([len(depth) for _, depth, _ in each], np.int64))
 
     def _triangles(self, number: int, clipped: bool) -> tuple[Int64, Int64, Int64]:
         """Positions, depths and colours of an object."""
@@ -98,3 +130,36 @@ class ObjectList:
             np.ones((*depth.shape, 1)), color.astype(np.float64)], axis=2)
         drawn = display_list_of_corners(corners, self.picture)
         return drawn.position.astype(np.int64), drawn.depth, drawn.color.astype(np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectDisplayList(DisplayList):
+    """The display list of objects, which it still knows.
+
+    ``objects``  in the formats in which they were quantised, whatever the list's are now
+    ``counts``   int64 (n,): triangles of each object
+    """
+
+    objects: ObjectList = None  # type: ignore[assignment]
+    counts: Int64 = None  # type: ignore[assignment]
+
+    @property
+    def object_triangles(self) -> Int64:
+        return self.counts
+
+    @cached_property
+    def object_of(self) -> Int64:
+        """int64 (triangles,): the object of each."""
+        return np.repeat(np.arange(len(self.counts)), self.counts)
+
+    def chosen(self, triangles: Int64) -> DisplayList:
+        return self._plain.chosen(triangles)
+
+    def followed_by(self, *others: DisplayList) -> DisplayList:
+        return self._plain.followed_by(*others)
+
+    @property
+    def _plain(self) -> DisplayList:
+        """The same triangles, of nothing."""
+        return DisplayList(**{field.name: getattr(self, field.name)
+                              for field in fields(DisplayList)})

@@ -14,10 +14,12 @@ from cardcage.golden.reference.exact import fragments
 
 @pytest.mark.parametrize(("cards", "block", "skew"), [
     *((cards, 1, skew) for cards in CARDS for skew in (False, True)), ("PMM", 4, False),
-    ("2x(PM)", 2, False), ("4x(PMM)", 4, False), ("8x(PM)", 8, False)])
+    ("2x(PM)", 2, False), ("4x(PMM)", 4, False), ("8x(PM)", 8, False),
+    ("4x(PMM)", "lines", False), ("8x(PM)", "lines", False)])
 def test_spans_hold_every_fragment_of_their_element(cards, block, skew):
     listed = scene(1)
-    configuration = wide_machine(listed, cards=cards, block=block, skew=skew)
+    block, lines = (1, True) if block == "lines" else (block, False)
+    configuration = wide_machine(listed, cards=cards, block=block, skew=skew, lines=lines)
     triangles, parts = spans_of(configuration, listed)
     assert len(parts) > 1 and [part.begin for part in parts[1:]] == [
         part.end for part in parts[:-1]]

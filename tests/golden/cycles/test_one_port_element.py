@@ -43,7 +43,8 @@ def test_written_fragments():
 
 @pytest.mark.parametrize(("cards", "options"), [
     ("PM", {}), ("PMM", {}), ("PMM", {"skew": True}), ("2x(PMM)", {"skew": True}),
-    ("4x(PM)", {"skew": True}), ("PMPMMM", {}), ("2x(PMM)", {"block": 4}), ("PMMMM", {})])
+    ("4x(PM)", {"skew": True}), ("PMPMMM", {}), ("2x(PMM)", {"block": 4}), ("PMMMM", {}),
+    ("2x(PMM)", {"lines": True}), ("4x(PM)", {"lines": True})])
 def test_share_of_the_scan(cards, options):
     """Against every pixel of the screen: a unit reads as the group of pixels begins."""
     machine = MachineConfiguration(cards, 40, 24, clocks_per_pixel=4, **options)

@@ -14,6 +14,8 @@ CAGES = {
     "a share of blocks that grow": {"cards": "PMMMPMMMMM"},
     "squares": {"cards": "4x(PMM)", "block": 4},
     "skewed": {"cards": "2x(PMM)", "skew": True},
+    "lines": {"cards": "4x(PMM)", "lines": True},
+    "lines, one unit each": {"cards": "8x(PM)", "lines": True},
     "coarser": {"cards": "PMMPMM", "words": 20},
     "orphans": {"cards": "MMPMPM", "allow_orphans": True},
 }

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from cardcage.golden.planning.presets import PRESETS
-from cardcage.golden.specification.configuration import MAXIMUM_WORDS, MachineConfiguration
+from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
+from cardcage.golden.specification.ranges import MAXIMUM_WORDS
 from cardcage.golden.specification.video_timing import STANDARD_TIMINGS, VideoTiming, compact_timing
 
 GOOD = {"cards": "PMMPMM", "width": 16, "height": 8}
@@ -119,6 +120,30 @@ def test_squares_are_not_skewed():
     skewed = MachineConfiguration("2x(PMM)", 16, 16, skew=True)
     assert skewed.interlace.skew_bit == 1
     assert [interlace.skew_bit for interlace in skewed.interlaces()] == [None, 0, 1]
+
+
+def test_lines_follow_the_cards():
+    configuration = MachineConfiguration("4x(PMM)", 32, 32, lines=True)
+    assert configuration.share_bits == 1 and configuration.aligned_domains
+    assert configuration.interlace.bit_order == (("y", 1), ("y", 0), ("x", 0))
+    more = MachineConfiguration("PMM", 32, 32, lines=True, maximum_units=8)
+    assert [interlace.units for interlace in more.interlaces()] == [2, 4, 8]
+
+
+@pytest.mark.parametrize(("fields", "message"), [
+    ({"cards": "PMMPM PM"}, "lines: .* want as many memory units each, not 1 and 2; change"),
+    ({"cards": "3x(PMM)"}, "lines: 3 processing elements .* --regions 1x16$"),
+    ({"cards": "6x(PM)", "height": 1025}, "lines: 6 .*; take a power of two, such as 4 or 8$"),
+    ({"block": 2}, "block: .*; leave it out, or leave out lines"),
+    ({"skew": True}, "skew: .*; leave it out, or leave out lines"),
+    ({"regions": (1, 16)}, "lines: is settled by the regions"),
+    ({"cards": "2xPD2xM"}, "lines: behind a direct merge .* leave it out"),
+])
+def test_lines_want_equal_shares_and_nothing_else(fields, message):
+    with pytest.raises(InputError, match=f"^{message}") as raised:
+        MachineConfiguration(**{"cards": "2x(PMM)", "width": 16, "height": 16, "lines": True}
+                             | fields)
+    assert "\n" not in str(raised.value)
 
 
 def test_one_word_still_has_an_address():

@@ -12,7 +12,11 @@ SIZES = st.integers(1, 80)
 
 @st.composite
 def interlaces(draw):
-    """Pixel by pixel, skewed or not, diagonally, or in squares of every side."""
+    """Pixel by pixel, skewed or not, diagonally, in lines, or in squares of every side."""
+    if draw(st.booleans()):
+        unit_bits = draw(st.integers(0, 6))
+        return Interlace(unit_bits, draw(SIZES), draw(SIZES), lines=True,
+                         share_bits=draw(st.integers(0, unit_bits)))
     if draw(st.booleans()):
         return Interlace(draw(st.integers(0, 6)), draw(SIZES), draw(SIZES), diagonal=True)
     unit_bits, square_bits = draw(st.integers(0, 6)), draw(st.integers(0, 5))
@@ -203,6 +207,23 @@ def test_skewed_units_read_half_as_often_in_a_line():
 def test_the_diagonal_tile_of_numbers(unit_bits, rows):
     interlace = Interlace(unit_bits, 16, 16, diagonal=True)
     assert [[interlace.unit(x, y) for x in range(4)] for y in range(len(rows))] == rows
+
+
+@pytest.mark.parametrize(("unit_bits", "share_bits", "rows"), [
+    (1, 0, [[0, 0, 0], [1, 1, 1], [0, 0, 0]]),
+    (2, 1, [[0, 1, 0], [2, 3, 2], [0, 1, 0]]),
+    (2, 0, [[0, 0, 0], [1, 1, 1], [2, 2, 2], [3, 3, 3], [0, 0, 0]]),
+    (4, 2, [[0, 1, 2, 3, 0], [4, 5, 6, 7, 4], [8, 9, 10, 11, 8], [12, 13, 14, 15, 12], [0]]),
+])
+def test_element_i_of_n_has_the_lines_i_and_n_more_each(unit_bits, share_bits, rows):
+    interlace = Interlace(unit_bits, 16, 16, lines=True, share_bits=share_bits)
+    assert [[interlace.unit(x, y) for x in range(len(row))] for y, row in enumerate(rows)] == rows
+
+
+@pytest.mark.parametrize("fields", [{"skew": True}, {"square_bits": 1}, {"diagonal": True}])
+def test_lines_are_nothing_else(fields):
+    with pytest.raises(ValueError, match="lines want neither squares nor skew nor diagonal"):
+        Interlace(2, 16, 16, lines=True, **fields)
 
 
 @pytest.mark.parametrize("fields", [{"skew": True}, {"square_bits": 1}])

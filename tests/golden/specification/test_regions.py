@@ -14,7 +14,7 @@ from cardcage.golden.specification.regions import default_slots, regions_of
     (4, "regions: 4 is not (columns, rows)"),
     ([4, 4], "regions: [4, 4] is not (columns, rows)"),
     ((4, 4.0), "regions: rows: 4.0 is not a whole number from 1 to 4096"),
-    ((16, 16), "regions: 1x1 pixels do not spread over 2 memory units; take 1x2 or more"),
+    ((16, 16), "regions: 1x1 pixels do not spread over 2 memory units; take 2x1 or more"),
 ], ids=str)
 def test_what_is_no_number_of_regions(regions, message):
     with pytest.raises(InputError) as caught:

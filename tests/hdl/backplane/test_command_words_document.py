@@ -39,7 +39,7 @@ def symbols(configuration):
             "R": configuration.edge_height_bits, "E": configuration.edge_word_bits,
             "D": configuration.depth_plane_bits, "K": configuration.channel_plane_bits,
             "O": configuration.order_bits, "Q": configuration.round_bits,
-            "N": configuration.node_bits}
+            "N": configuration.node_bits, "I": configuration.mesh_bits}
 
 
 def test_title_has_the_version():
@@ -88,7 +88,7 @@ def test_width_formulas(name):
     configuration = CONFIGURATIONS[name]
     values = symbols(configuration)
     (width, height, s, d, fraction, b, x, y, c, r, e, depth, channel, order, rounds,
-     node) = values.values()
+     node, _) = values.values()
 
     def guard(v):
         g = 0

@@ -124,6 +124,9 @@ SQUARES = [("PM", 4, 16), ("PMM", 2, 16), ("PMMMM", 2, 16), ("PMM", 8, 8), ("PMM
            ("PM", 32, 4)]
 
 
+#: In lines: the share's units, and the cage's.
+LINES = [("PM", "lines", 4), ("PMM", "lines", 16), ("PMMMM", "lines", 8), ("PMMMM", "lines", 4)]
+
 #: The same, in no squares but skewed.
 SKEWED = [("PM", None, units) for units in UNITS]
 
@@ -133,19 +136,19 @@ DIAGONAL = [("PPDM", 1, units) for units in UNITS]
 
 def squares(cards, block, units, picture):
     """The machine, and the interlace that it settles on with so many units; skewed where there
-    are no squares."""
+    are neither squares nor lines."""
     width, height, words = picture
-    shape = {"skew": True} if block is None else {"block": block}
+    shape = {None: {"skew": True}, "lines": {"lines": True}}.get(block, {"block": block})
     configuration = small_machine(cards, width, height, words=words, maximum_units=max(units, 2),
                                   **shape)
     return configuration, interlace_for(
         width, height, words=words, units=units, square_bits=configuration.square_bits,
         share_bits=configuration.share_bits, skew=configuration.skew,
-        diagonal=configuration.merges_directly)
+        diagonal=configuration.merges_directly, lines=configuration.lines)
 
 
 @pytest.mark.parametrize("picture", PICTURES, ids=str)
-@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + SKEWED + DIAGONAL)
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + LINES + SKEWED + DIAGONAL)
 def test_pixels_in_squares_skewed_and_diagonal(cards, block, units, picture):
     """Address and scan, pixel by pixel: each lies in the word that is fetched before it is shown,
     and no unit reads the scan more often than ``scan_reads`` says."""
@@ -188,9 +191,10 @@ def test_pixels_in_squares_skewed_and_diagonal(cards, block, units, picture):
     evaluate(scan, lines)
 
 
-@pytest.mark.parametrize(("cards", "block", "units"), SQUARES)
+@pytest.mark.parametrize(("cards", "block", "units"), SQUARES + LINES)
 def test_a_share_is_a_lattice_of_squares(cards, block, units):
     configuration, interlace = squares(cards, block, units, (33, 17, 33 * 17))
+    block = configuration.block
     dut = LatticeBlock(configuration=configuration)
     share = 1 << configuration.share_bits
 

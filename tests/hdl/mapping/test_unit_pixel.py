@@ -15,6 +15,7 @@ MACHINES = {
     "coarser": ("PMMMM", (23, 17), {"words": 30}),
     "skewed": ("PMMPMM", (23, 17), {"skew": True}),
     "squares": ("4x(PMM)", (23, 17), {"block": 4}),
+    "lines": ("4x(PMM)", (23, 17), {"lines": True}),
     "diagonal": ("PPDMMMM", (23, 17), {}),
 }
 

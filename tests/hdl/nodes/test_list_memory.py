@@ -6,7 +6,7 @@ import pytest
 from hdl_bench.bench import Agent, Drive, rejects, simulate
 from hdl_bench.streams import Sink, no_pause, pauses
 
-from cardcage.golden.specification.configuration import MAXIMUM_WORDS
+from cardcage.golden.specification.ranges import MAXIMUM_WORDS
 from cardcage.hdl.nodes.list_memory import ListMemory
 
 SIZES = [1, 2, 3, 5, 8, 13]

@@ -5,7 +5,7 @@ from itertools import groupby
 
 import pytest
 from hdl_bench.bench import Until, Watch, simulate
-from hdl_bench.domains import IN_SQUARES, MACHINES, Lattice, blocks, domain
+from hdl_bench.domains import IN_LINES, IN_SQUARES, MACHINES, Lattice, blocks, domain
 from hdl_bench.streams import Sink, Source, no_pause, pauses
 
 from cardcage.hdl.rasteriser.span_clip import SpanClip
@@ -72,14 +72,14 @@ def run(name, seed, pause, count=120, **changes):
 
 @pytest.mark.parametrize(("name", "skew"), [*((name, skew) for name in MACHINES
                                              for skew in (False, True)),
-                                            *((name, False) for name in IN_SQUARES)])
+                                            *((name, False) for name in [*IN_SQUARES, *IN_LINES])])
 def test_spans_are_the_owned_pixels_of_the_extent(name, skew):
     *_, counts = run(name, skew, (pauses(f"in {name}"), pauses(f"out {name}")), skew=skew)
     assert 0 in counts and 1 in counts
     assert max(counts) > 1 or name not in IN_SQUARES or name in ("all", "one of two, rows only")
 
 
-@pytest.mark.parametrize("name", [*MACHINES, *IN_SQUARES])
+@pytest.mark.parametrize("name", [*MACHINES, *IN_SQUARES, *IN_LINES])
 def test_latency_and_throughput(name):
     """A span a clock; an extent without one costs a clock."""
     dut, source, sink, counts = run(name, "speed", (no_pause, no_pause))

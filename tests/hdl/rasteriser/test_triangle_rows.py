@@ -5,7 +5,7 @@ import random
 import pytest
 from amaranth.hdl import Cat
 from hdl_bench.bench import Drive, Watch, simulate
-from hdl_bench.domains import IN_SQUARES, MACHINES, SETTLED, Lattice, blocks, domain, masked
+from hdl_bench.domains import IN_LINES, IN_SQUARES, MACHINES, SETTLED, Lattice, blocks, domain, masked
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
 
@@ -104,7 +104,7 @@ def run(configuration, first, end, seed, pause, count=30):
 
 @pytest.mark.parametrize(("name", "skew"), [*((name, skew) for name in MACHINES
                                              for skew in (False, True)),
-                                            *((name, False) for name in IN_SQUARES)])
+                                            *((name, False) for name in [*IN_SQUARES, *IN_LINES])])
 def test_rows_are_those_the_domain_has_pixels_in(name, skew):
     configuration, first, end = domain(name, skew=skew)
     run(configuration, first, end, f"{name} {skew}", (pauses(f"in {name}"), pauses(f"out {name}")))
@@ -120,7 +120,7 @@ def test_without_units_a_triangle_has_one_row_that_is_none(cards, unit, seed):
         assert source.taken == list(range(SETTLED, SETTLED + len(triangles)))
 
 
-@pytest.mark.parametrize("name", [*MACHINES, *IN_SQUARES])
+@pytest.mark.parametrize("name", [*MACHINES, *IN_SQUARES, *IN_LINES])
 def test_latency_and_throughput(name):
     """A row a clock and the next triangle at once; where there are several blocks three clocks
     more for each, and a clock for one without rows."""

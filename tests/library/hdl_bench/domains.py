@@ -27,17 +27,24 @@ IN_SQUARES = {
     "all": ("PMMMM", 4, (0, 4), (9, 8)),
 }
 
+#: The same, where ``block`` "lines" stands for lines in turn.
+IN_LINES = {
+    "lines of the first of four": ("4x(PMM)", "lines", (0, 2), (13, 9)),
+    "lines of the last of eight": ("8x(PM)", "lines", (7, 8), (16, 17)),
+}
+
 #: Clocks until rows and columns know their lattice.
 SETTLED = 3
 
 
 def domain(name, **changes):
-    """Configuration, first unit and end of one of ``MACHINES`` or ``IN_SQUARES``."""
+    """Configuration, first unit and end of one of ``MACHINES``, ``IN_SQUARES`` or ``IN_LINES``."""
     if name in MACHINES:
         cards, units, words, size = MACHINES[name]
         return small_machine(cards, *size, words=words, **changes), *units
-    cards, block, units, size = IN_SQUARES[name]
-    return small_machine(cards, *size, block=block, **changes), *units
+    cards, block, units, size = (IN_SQUARES | IN_LINES)[name]
+    shape = {"lines": True} if block == "lines" else {"block": block}
+    return small_machine(cards, *size, **shape, **changes), *units
 
 
 def blocks(first, end):

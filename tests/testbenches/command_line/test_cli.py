@@ -209,6 +209,8 @@ def test_no_frame(place, engine, error):
     (["--block", "64"], "block"),
     (["--block", "4", "--skew"], "skew: in squares of 4x4 pixels"),
     (["--cards", "PMMMPM", "--block", "4"], "block: squares of 4x4 pixels want as many memory"),
+    (["--cards", "3x(PM)", "--lines"], "as with --regions 1x"),
+    (["--lines", "--block", "4"], "block: processing elements that have lines in turn"),
     (["--clocks-per-pixel", "1"], "clocks-per-pixel"),
     (["--random-memory", "-1"], "random-memory"),
     (["--engine", "abacus"], "abacus"),

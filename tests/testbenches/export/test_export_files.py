@@ -104,11 +104,12 @@ def test_memory_ports():
 
 def test_the_interlace_is_described():
     for options, block, reads in ((["--block", "1"], 1, 8), (["--block", "4"], 4, 4),
-                                  (["--skew"], 1, 4)):
+                                  (["--skew"], 1, 4), (["--lines"], 1, 8)):
         assert run("--cards", "4x(PMM)", "--size", "16x16", "--fraction-bits", 28, *options,
                    "--component", "memory_unit", "-o", "unit.v").exit_code == 0
         configuration = json.loads(Path("unit.json").read_text())["configuration"]
         assert (configuration["block"], configuration["skew"]) == (block, "--skew" in options)
+        assert configuration["lines"] == ("--lines" in options)
         assert configuration["scan_reads_per_line"] == reads
         assert f" {' '.join(options)} " in Path("unit.v").read_text()
 

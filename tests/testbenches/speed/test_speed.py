@@ -112,7 +112,7 @@ def test_the_mesh_lies_in_three_layers():
 
 @pytest.mark.parametrize(("cards", "options"), [
     ("PM", {}), ("PMPM", {}), ("4x(PM)", {"block": 4, "memory_ports": 2}), ("PMM", {"skew": True}),
-    ("2x(PMM)", {})])
+    ("2x(PMM)", {}), ("2x(PMM)", {"lines": True})])
 def test_measured_and_predicted(cards, options):
     cases = [small_case(1, 20), small_case(2, 35)]
     configuration = replace(wide_machine(cases[1].frame, cards=cards, **options), observe=True,

@@ -1,0 +1,97 @@
+"""What a machine makes of objects: where, how much of it has pixels, and what the host says for
+it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..organisations.object_shares import ObjectShares
+from ..organisations.organisation_of import organisation_of
+from ..reference.triangle_setup import outline
+from ..specification.commands import command_words
+from ..specification.configuration import MachineConfiguration
+from ..specification.display_list import DisplayList
+from ..specification.sampling_grid import Grid
+from .object_words import made_of_objects
+
+Int64 = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Made:
+    """At one place that makes triangles, in one frame.
+
+    ``objects``  that it is sent whole
+    ``made``     triangles of these
+    ``sent``     triangles that it is sent as vertices, of objects that are clipped
+    ``dropped``  triangles of either kind that set-up drops, which have no pixel
+    """
+
+    objects: int
+    made: int
+    sent: int
+    dropped: int
+
+
+@dataclass(frozen=True)
+class LinkWords:
+    """32-bit words on the host link.
+
+    ``meshes``  to load the meshes, once
+    ``frame``   of a frame: its start and end, objects, and triangles of clipped ones
+    """
+
+    meshes: int
+    frame: int
+
+    @property
+    def total(self) -> int:
+        """Of the first frame."""
+        return self.meshes + self.frame
+
+
+def made_at_nodes(configuration: MachineConfiguration, display_list: DisplayList) -> list[Made]:
+    """Of each node, where they make the triangles of their objects."""
+    shares = organisation_of(configuration).shares(display_list)
+    assert isinstance(shares, ObjectShares)
+    return _made(configuration, display_list, shares.objects.node, configuration.nodes)
+
+
+def made_at_controller(configuration: MachineConfiguration, display_list: DisplayList) -> Made:
+    """Where the controller makes all."""
+    listed = made_of_objects(display_list)
+    return _made(configuration, display_list, np.zeros(len(listed.counts), np.int64), 1)[0]
+
+
+def _made(configuration: MachineConfiguration, display_list: DisplayList, place: Int64,
+          places: int) -> list[Made]:
+    """``place``: int64 (objects,), the one that makes each."""
+    listed = made_of_objects(display_list)
+    clipped = listed.objects.clipped
+    shifts = organisation_of(configuration).resolution.shifts
+    seen = outline(listed, Grid.of(listed, **shifts)).boxes.primitive
+    triangles = np.bincount(place, listed.counts, places).astype(np.int64)
+    sent = np.bincount(place[clipped], listed.counts[clipped], places).astype(np.int64)
+    drawn = np.bincount(place[listed.object_of[seen]], minlength=places)
+    whole = np.bincount(place[~clipped], minlength=places)
+    return [Made(int(whole[each]), int(triangles[each] - sent[each]), int(sent[each]),
+                 int(triangles[each] - drawn[each])) for each in range(places)]
+
+
+def link_words(configuration: MachineConfiguration, display_list: DisplayList) -> LinkWords:
+    """What the host sends to load the meshes, after an order to forget all others, and to draw
+    ``display_list``."""
+    listed = made_of_objects(display_list)
+    each, clipped = command_words(configuration), listed.objects.clipped
+    meshes = listed.objects.meshes
+    loads = 1 + len(meshes) + sum(mesh.triangles for mesh in meshes)
+    draws = 2 + int((~clipped).sum()) + int(listed.counts[clipped].sum())
+    return LinkWords(each * loads, each * draws)
+
+
+def triangle_link_words(configuration: MachineConfiguration, display_list: DisplayList) -> int:
+    """32-bit words on the host link for the same frame, were every triangle sent as vertices."""
+    return command_words(configuration) * (2 + display_list.triangles)

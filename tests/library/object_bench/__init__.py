@@ -1,0 +1,1 @@
+"""What tests of machines that take objects share."""

@@ -1,0 +1,111 @@
+"""Nodes that make the triangles of their objects: whole frames, several in a run of one model,
+judged by golden: every pixel on the pins, every depth, and every count."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from node_frames import READ_COUNTERS, READ_DEPTH, check_merged, compiled, run
+from object_bench.objects import object_machine, random_objects
+
+from cardcage.golden.objects.making import link_words, made_at_nodes
+from cardcage.golden.objects.object_words import frame_words
+from cardcage.golden.specification import commands
+from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.testbenches.frames.frame_job import frame_commands
+from cardcage.testbenches.frames.responses import Answers
+
+#: Machines that are compiled once for all tests.
+MODELS = {
+    "chain of three": ("3x(PMMC)", {"packet": 2, "shading": "flat", "setup_interval": 8}),
+    "tree of two of two elements": ("2x(PMPMT)", {"packet": 1, "memory_ports": 2}),
+    "bus of two": ("2x(PMS)F", {"packet": "contiguous", "shading": "flat", "order_bits": 0,
+                                "setup_interval": 64}),
+}
+MESHES = (0, 1, 2, 3, 7)
+
+
+def machine(name):
+    cards, options = MODELS[name]
+    return object_machine(cards, **{"fraction_bits": 32, "clocks_per_pixel": 2} | options)
+
+
+def read(each):
+    """Commands of frames, with depths and counters read back after each."""
+    return [word for own in each for word in [*own, READ_DEPTH, READ_COUNTERS]]
+
+
+def lists(configuration):
+    """Display lists of objects of the same meshes; of the second none is whole, of the third none
+    is there."""
+    some, clipped, none = (random_objects(configuration, count, 1, MESHES, wide=True,
+                                           flat=configuration.shading == "flat")
+                           for count in (30, 6, 0))
+    clipped = replace(clipped, mesh=np.full(6, len(MESHES)))
+    return [objects.display_list() for objects in (some, clipped, none)]
+
+
+def redrawn(configuration, listed):
+    """Of meshes that are there."""
+    return [commands.frame_start(listed.background), *frame_words(configuration, listed),
+            commands.command(Opcode.FRAME_END)]
+
+
+@pytest.mark.parametrize("stall_seed", [None, 4])
+@pytest.mark.parametrize("name", MODELS)
+def test_frames_of_objects(name, stall_seed):
+    """Meshes are loaded before the first and before the third; objects that reach out of the guard
+    band come as triangles in between; then the host prepares all, and the first again."""
+    configuration = machine(name)
+    first, second, empty = lists(configuration)
+    drawn = [first, second, empty, first, first]
+    frames = [frame_commands(configuration, first), redrawn(configuration, second),
+              frame_commands(configuration, empty),
+              frame_commands(configuration, first, configuration.fraction_bits),
+              redrawn(configuration, first)]
+    assert len(frames[0]) * commands.command_words(configuration) == link_words(
+        configuration, first).total
+    answers = Answers(configuration, run(configuration, read(frames), compiled(),
+                                         memory_seed=5, stall_seed=stall_seed))
+    for number, listed in enumerate(drawn):
+        simulation = answers.frame(number, reading=number)
+        check_merged(configuration, listed, simulation)
+        made = made_at_nodes(configuration, listed)
+        if number == 3:
+            assert (list(simulation.made), list(simulation.dropped)) == (
+                [0] * configuration.nodes,) * 2
+            continue
+        assert list(simulation.made) == [each.made for each in made]
+        assert list(simulation.dropped) == [each.dropped for each in made]
+    assert sum(each.sent for each in made_at_nodes(configuration, second)) == second.triangles > 0
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_objects_that_are_refused(name):
+    """Of a mesh that was not loaded, and of any while some mesh found no room, even those that were
+    loaded; whole frames before and after."""
+    configuration = machine(name)
+    listed, *_ = lists(configuration)
+    clear, load, begin = (commands.command(opcode) for opcode in (
+        Opcode.CLEAR_LISTS, Opcode.MESH_TRIANGLE, Opcode.MESH))
+    meshes = configuration.meshes
+    mesh_7 = commands.command(Opcode.OBJECT, 7)
+    many = [clear, begin, *[load] * (configuration.mesh_triangles + 1)]
+    good = frame_commands(configuration, listed)
+    start, *objects, end = redrawn(configuration, listed)
+    whole = [word for word in objects if commands.opcode_of(word) == Opcode.OBJECT]
+    cases = [(good, []), ([start, mesh_7, *objects, end], [Fault.NO_MESH]),
+             ([*many, start, *whole, end], [Fault.LIST_FULL] * len(whole)),
+             ([clear, *[begin] * (meshes + 1), start, mesh_7, end], [Fault.LIST_FULL]),
+             ([clear, load, begin, start, mesh_7, end], [Fault.NO_MESH]), (good, [])]
+    words = [*(word for own, _ in cases for word in own), READ_COUNTERS]
+    answered = run(configuration, words, compiled(), extra=sum(len(some) for _, some in cases))
+    faults = [value for kind, value, _ in answered.responses if kind == ResponseKind.ERROR]
+    assert faults == [fault for _, some in cases for fault in some]
+    shown = [cycle for kind, _, cycle in answered.responses if kind == ResponseKind.FRAME_SHOWN]
+    pictures = [next(scan.picture for scan in answered.scans if scan.cycle > cycle)
+                for cycle in shown]
+    for number in (1, 5):
+        np.testing.assert_array_equal(pictures[number], pictures[0])
+    for number in (2, 3, 4):
+        assert (pictures[number] == listed.background).all()
