@@ -43,9 +43,12 @@ def boot_table(configuration: MachineConfiguration) -> Int64:
 
 
 def default_policy(configuration: MachineConfiguration) -> Policy:
-    """The best of those that need no other machine: ``learnt``, where a host has its clocks."""
+    """The best of those that need no other machine: ``learnt``, where a host has its clocks; and
+    what a machine has whose processing elements pass objects on."""
     if (configuration.balance, configuration.balancer) == ("clocks", "host"):
         return "learnt"
+    if configuration.forwards_objects:
+        return "runs"
     return configuration.balance
 
 
@@ -56,6 +59,9 @@ def check_policy(configuration: MachineConfiguration, policy: Policy) -> None:
     if policy == "learnt" and configuration.balancer == "hardware":
         raise InputError("balance: learnt is for a host, and the hardware packs the last picture's "
                          "counts as they are; take balance clocks, or the balancer host")
+    if configuration.forwards_objects and policy != "runs":
+        raise InputError(f"balance: processing elements that pass objects on have a run of regions "
+                         f"each, not {policy}; take runs, or leave it out")
     if counted_by(policy) != configuration.balance:
         raise InputError(f"balance: {policy} is for machines that count {counted_by(policy)} of "
                          f"regions, this one counts {configuration.balance}")

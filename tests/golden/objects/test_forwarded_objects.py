@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cardcage.golden.balancing.forwarded_objects import ForwardedObjects
-from cardcage.golden.balancing.object_boxes import ObjectBoxes, mesh_box
+from cardcage.golden.objects.forwarded_objects import ForwardedObjects
+from cardcage.golden.objects.object_boxes import ObjectBoxes, mesh_box
 from cardcage.golden.organisations.region_table import runs_table
 from cardcage.golden.reference.exact import draw
 from cardcage.golden.scenes.quantise import PictureFormat
