@@ -14,7 +14,8 @@ ahead together; only of its last one is it asked whether there was a place.
 
 In a cage of nodes the elements of a node only get its own triangles.  The host sends them all
 through one broadcast, which waits only for the queues of the node that is to get the next one;
-or each node has its share in a list, and all send theirs at the same time.  Elements without
+or each node has its share in a list, and all send theirs at the same time; or each makes the
+triangles of its objects itself (``objects``).  Elements without
 pixels of their own are followed clock by clock (``direct``): they wait for memory units, and so for
 one another.  Where regions are dealt out a triangle is walked visit by visit (``regions``).
 
@@ -27,6 +28,7 @@ it may be five percent off.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +41,7 @@ from .broadcast import ControllersBroadcast, ListBroadcasts, NodeQueues, SetUp, 
 from .direct.direct_work import DirectWork
 from .element_latencies import NEVER, PIPELINE, Pipeline
 from .node_work import NodeWork
+from .objects.node_objects import ObjectRun
 from .regions.region_work import RegionWork
 
 Float64 = NDArray[np.float64]
@@ -53,8 +56,9 @@ class CyclePrediction:
                           draw the lists, until the machine is done, were this triangle the last;
                           of those that may cover a pixel, in the order in which the host sends
                           them, those of lists in the display list's
-    ``setup_bound``       clocks to set up all of them at best; 0 where that was done before
-    ``broadcast_bound``   clocks to send all of them at best
+    ``setup_bound``       clocks to set up all of them at best; 0 where that was done before; where
+                          nodes do it, all those of one
+    ``broadcast_bound``   clocks to send all of them, or the objects, at best
     ``element_bound``     float64 (elements,): clocks in which each processing element alone, all
                           triangles at hand, finds its rows, and in which it has a fragment each;
                           the greater
@@ -109,10 +113,13 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         return _predict_direct(configuration, display_list, pipeline, after, setup, retained,
                                begin)
     organisation = organisation_of(configuration).dealt(table)
-    works = ([RegionWork(organisation, display_list, pipeline, after)]
-             if isinstance(organisation, DealtRegions) else
-             [NodeWork(organisation, display_list, node, pipeline, after)
-              for node in range(configuration.nodes)])
+    works: list[Any] = (
+        [RegionWork(organisation, display_list, pipeline, after)]
+        if isinstance(organisation, DealtRegions) else
+        [NodeWork(organisation, display_list, node, pipeline, after)
+         for node in range(configuration.nodes)])
+    if configuration.objects == "nodes" and setup is not None:
+        return _predict_objects(configuration, display_list, works, pipeline, setup)
     sent, nodes, _ = _sending_order(
         configuration, display_list, np.concatenate([work.primitive for work in works]), retained)
     broadcast = (ListBroadcasts() if retained else
@@ -132,6 +139,19 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     return CyclePrediction(
         np.array(finished), _setup_bound(display_list, setup, sum(kept), retained),
         float(max(kept) if retained else sum(kept)),
+        np.concatenate([work.bound for work in works]), max(work.port_bound for work in works))
+
+
+def _predict_objects(configuration: MachineConfiguration, display_list: DisplayList,
+                     works: list[NodeWork], pipeline: Pipeline,
+                     setup: SetupTiming) -> CyclePrediction:
+    """Where each node makes the triangles of its objects."""
+    run = ObjectRun(configuration, display_list, works, pipeline, setup)
+    made = np.bincount(organisation_of(configuration).shares(display_list).node,
+                       minlength=configuration.nodes)
+    return CyclePrediction(
+        np.array(run.finished),
+        float(np.maximum(setup.interval * run.kept, made).max()), float(run.commands),
         np.concatenate([work.bound for work in works]), max(work.port_bound for work in works))
 
 

@@ -63,7 +63,9 @@ def predict_frame(configuration: MachineConfiguration, display_list: DisplayList
     """
     organisation = organisation_of(configuration)
     survey = SURVEYED_UNIT * max(domain.units for domain in organisation.domains) + SURVEY_END
-    estimate = estimate_cycles(configuration, display_list)
+    # Nodes that make the triangles of their objects do so side by side, as from lists.
+    estimate = estimate_cycles(configuration, display_list,
+                               retained=configuration.objects == "nodes")
     draw = estimate.total
     if setup is not None:
         draw = max(draw, setup.interval * estimate.broadcast + setup.latency)

@@ -1,0 +1,1 @@
+"""How long a machine takes that makes the triangles of objects itself."""
