@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -28,7 +28,8 @@ def blazek_facts(found: Blazek) -> dict[str, Any]:
     ``equal`` ``differences``   whether machines did as the golden models say, and lines where not
     ``nodes`` ``spheres``       along which all is listed
     ``his`` ``ours``   by method: ``time``, in seconds or clocks, ``merging`` of it, ``speed_up``
-                       and ``efficiency``, a list by spheres of lists by nodes
+                       and ``efficiency``, a list by spheres of lists by nodes; of ours also
+                       ``words`` of 32 bits on the host link, the mesh loaded anew
     ``costs``          of his machine, in seconds or bytes
     ``sensitivity``    axis, unit, usual, values, and speed_up by method along these
     ``points``         measured in RTL: decomposition, nodes, spheres, drawing, merging,
@@ -50,7 +51,8 @@ def blazek_facts(found: Blazek) -> dict[str, Any]:
         "nodes": list(NODES),
         "spheres": list(SPHERES),
         "his": _curves(found.times),
-        "ours": _curves(found.clocks),
+        "ours": {name: facts | {"words": _rows(found.clocks[name].words)}
+                 for name, facts in _curves(found.clocks).items()},
         "costs": asdict(COSTS),
         "sensitivity": [
             {"axis": each.axis, "unit": axis_of(each.axis).unit, "usual": axis_of(each.axis).usual,
@@ -77,13 +79,14 @@ def blazek_facts(found: Blazek) -> dict[str, Any]:
     }
 
 
-def _curves(methods: Mapping[str, SpeedUps]) -> dict[str, Any]:
-    def rows(value: Any) -> list[list[float]]:
-        return [[float(value(spheres, nodes)) for nodes in NODES] for spheres in SPHERES]
-
-    return {name: {"time": rows(method.time), "merging": rows(method.merging),
-                   "speed_up": rows(method.speed_up), "efficiency": rows(method.efficiency)}
+def _curves(methods: Mapping[str, SpeedUps]) -> dict[str, dict[str, Any]]:
+    return {name: {"time": _rows(method.time), "merging": _rows(method.merging),
+                   "speed_up": _rows(method.speed_up), "efficiency": _rows(method.efficiency)}
             for name, method in methods.items()}
+
+
+def _rows(value: Callable[[int, int], float]) -> list[list[float]]:
+    return [[value(spheres, nodes) for nodes in NODES] for spheres in SPHERES]
 
 
 def _point(point: Point) -> dict[str, Any]:

@@ -12,12 +12,13 @@ from .findings import findings
 from .his_machine.costs import COSTS, MICROSECOND, REASONS
 from .his_machine.his_claims import his_summary
 from .his_machine.sensitivity import SHOWN, Sensitivity, axis_of
+from .our_machine.clocks import Clocks
 from .our_machine.in_rtl import Point
 from .scenes.speed_ups import SpeedUps
 from .scenes.spheres import NODES
 
 #: Spheres of the tables.
-SHOWN_SPHERES = (1, 32, 256, 2048)
+SHOWN_SPHERES = (1, 16, 256, 2048)
 
 
 def headline(found: Blazek) -> list[str]:
@@ -34,6 +35,7 @@ def tables(found: Blazek) -> list[TextTable]:
     made = [speed_up_table("his machine, an event model: speed-up, seconds", found.times),
             *(sensitivity_table(each) for each in found.sensitivity),
             speed_up_table("ours, by the cycle model: speed-up, clocks", found.clocks)]
+    made.append(link_table(found.clocks))
     if found.points:
         made.append(point_table(found.points))
     return made
@@ -62,6 +64,14 @@ def sensitivity_table(found: Sensitivity) -> TextTable:
         f"{axis.usual:g})",
         ("method", *(f"{value:g}" for value in axis.values)),
         tuple((method, *(f"{speed:.1f}" for speed in found.speed_up[method])) for method in SHOWN))
+
+
+def link_table(clocks: Mapping[str, Clocks]) -> TextTable:
+    return TextTable(
+        f"ours: words of 32 bits on the host link for a frame on {MOST} nodes, the mesh loaded "
+        "anew", ("decomposition", *(f"{spheres:,} spheres" for spheres in SHOWN_SPHERES)),
+        tuple((name, *(f"{found.words(spheres, MOST):,}" for spheres in SHOWN_SPHERES))
+              for name, found in clocks.items()))
 
 
 def costs_with_reasons() -> list[tuple[str, str, str]]:

@@ -49,8 +49,8 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
         f"{COSTS.byte * COSTS.polygon_bytes / MICROSECOND:.0f} µs.  So chapter V's remark on "
         "forwarded polygons and chapter VI's on broadcast cannot both hold of one renderer.",
         f"Even where tessellating is all but free ({axis_of(TESSELLATING).values[0]:g} µs) "
-        f"interlaced lines come to a speed-up of {free[LINES][0]:.1f} on {MOST} nodes: a polygon is "
-        f"set up by each node that has a line of it, {meetings:.1f} on average.  Strips come to "
+        f"interlaced lines come to a speed-up of {free[LINES][0]:.1f} on {MOST} nodes: a polygon "
+        f"is set up by each node that has a line of it, {meetings:.1f} on average.  Strips come to "
         f"{free[BROADCAST_STRIPS][0]:.1f}.",
     ]
     byte = axis_of(BYTE)
@@ -68,19 +68,32 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
 def _of_ours(clocks: Mapping[str, Clocks]) -> list[str]:
     spheres = ALL_SPHERES[-1]
     node, host = clocks["node initiated"], clocks["host initiated, 100"]
-    fastest = min(clocks, key=lambda name: clocks[name].time(spheres, MOST))
-    drawing = host.drawing(spheres, MOST) / node.drawing(spheres, MOST)
+    lines = clocks["broadcast, lines"]
+    order = sorted(clocks, key=lambda name: clocks[name].time(spheres, MOST))
+    fastest, merging = clocks[order[0]], node.merging(spheres, MOST)
     return [
-        f"Of ours {fastest} draws {spheres:,} spheres on {MOST} nodes in the fewest clocks: "
-        f"{clocks[fastest].time(spheres, MOST):,.0f}, a speed-up of "
-        f"{clocks[fastest].speed_up(spheres, MOST):.1f}.",
-        f"Node initiated draws {drawing:.1f} times as fast as host initiated there, and then "
-        f"merges for {node.merging(spheres, MOST):,.0f} clocks, "
-        f"{100 * node.merging(spheres, MOST) / node.time(spheres, MOST):.0f} % of its frame.",
-        "Made at the controller, triangles come one in three clocks, whatever the number of "
-        "elements, as his host's or his tessellation's: broadcast by lines and host initiated draw "
-        f"in {clocks['broadcast, lines'].drawing(spheres, MOST):,.0f} and "
+        f"Of ours {order[0]} draws {spheres:,} spheres on {MOST} nodes in the fewest clocks: "
+        f"{fastest.time(spheres, MOST):,.0f}, a speed-up of {fastest.speed_up(spheres, MOST):.1f}; "
+        f"then come {order[1]} ({clocks[order[1]].time(spheres, MOST):,.0f}) and {order[2]} "
+        f"({clocks[order[2]].time(spheres, MOST):,.0f}).",
+        f"Node initiated draws {host.drawing(spheres, MOST) / node.drawing(spheres, MOST):.1f} "
+        f"times as fast as host initiated there, in {node.drawing(spheres, MOST):,.0f} clocks, a "
+        f"speed-up of {node.drawing(spheres, 1) / node.drawing(spheres, MOST):.1f}; then its tree "
+        f"merges for {merging:,.0f}, {100 * merging / node.time(spheres, MOST):.0f} % of the "
+        "frame.",
+        "Made in one place, triangles come one in three clocks, however many elements there are, "
+        "as by his host, or as all his nodes tessellate all objects: broadcast by lines and host "
+        f"initiated draw in {lines.drawing(spheres, MOST):,.0f} and "
         f"{host.drawing(spheres, MOST):,.0f} clocks.",
+        "A list of objects keeps those elements waiting in whose parts of the screen none of the "
+        f"objects lies that come just then: broadcast to strips draws in "
+        f"{clocks['broadcast, strips'].drawing(spheres, MOST):,.0f} clocks, to a grid in "
+        f"{clocks['broadcast, grid'].drawing(spheres, MOST):,.0f}.  Forwarded, objects wait in "
+        f"each element's own queue: {clocks['forwarding, strips'].drawing(spheres, MOST):,.0f} and "
+        f"{clocks['forwarding, grid'].drawing(spheres, MOST):,.0f}.",
+        f"The host sends {node.words(spheres, MOST):,} words for the objects, meshes loaded anew, "
+        f"and {host.words(spheres, MOST):,} for their triangles: "
+        f"{host.words(spheres, MOST) / node.words(spheres, MOST):.0f} times as many.",
     ]
 
 

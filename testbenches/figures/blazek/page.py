@@ -18,6 +18,7 @@ from .claims import Methods, claims_of, claims_of_all, summary
 from .facts import PAPER, blazek_facts
 from .figure_tables import (
     costs_with_reasons,
+    link_table,
     point_table,
     sensitivity_table,
     speed_up_table,
@@ -113,6 +114,7 @@ def blazek_page(found: Blazek, facts: dict[str, Any]) -> str:
         costs_with_reasons=costs_with_reasons(),
         his_table=speed_up_table("his machine: speed-up, seconds", found.times),
         our_table=speed_up_table("ours: speed-up, clocks", found.clocks),
+        link_table=link_table(found.clocks),
         point_table=point_table(found.points) if found.points else None,
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 from ....support.measurement_cache import measured_once, package_hash
 from ..scenes.speed_ups import SpeedUps
 from ..scenes.spheres import NODES, SPHERES, Size
-from .decompositions import DECOMPOSITIONS, drawing_clocks, node_of_triangles
+from .decompositions import DECOMPOSITIONS, drawing_clocks, node_of_triangles, words_on_link
 from .merging import merging_clocks
 
 #: Of the places of the spheres.
@@ -35,23 +35,29 @@ class ClocksJob:
             merging = merging_clocks(
                 asked.configuration(self.size, self.nodes), self.size, SEED, SPHERES,
                 node_of_triangles(asked, self.nodes, SPHERES[-1]))
-        return {"drawing": drawing, "merging": merging}
+        words = words_on_link(asked, self.size, SEED, self.nodes, SPHERES)
+        return {"drawing": drawing, "merging": merging, "words": words}
 
 
 @dataclass(frozen=True, eq=False)
 class Clocks(SpeedUps):
-    """A decomposition, in clocks; what drawing and merging take by number of nodes, along
-    ``SPHERES``."""
+    """A decomposition, in clocks; what drawing and merging take, and the words on the host link,
+    by number of nodes, along ``SPHERES``."""
 
     name: str
     drawing_clocks: dict[int, Sequence[float]]
     merging_clocks: dict[int, Sequence[int]]
+    link_words: dict[int, Sequence[int]]
 
     def drawing(self, spheres: int, nodes: int) -> float:
         return self.drawing_clocks[nodes][SPHERES.index(spheres)]
 
     def merging(self, spheres: int, nodes: int) -> float:
         return self.merging_clocks[nodes][SPHERES.index(spheres)]
+
+    def words(self, spheres: int, nodes: int) -> int:
+        """Of 32 bits, on the host link, for a frame whose mesh is loaded anew."""
+        return self.link_words[nodes][SPHERES.index(spheres)]
 
     def time(self, spheres: int, nodes: int) -> float:
         return self.drawing(spheres, nodes) + self.merging(spheres, nodes)
@@ -64,8 +70,9 @@ def clocks_jobs(size: Size) -> list[ClocksJob]:
 
 def clocks_of(jobs: Sequence[ClocksJob], found: Sequence[dict[str, Any]]) -> dict[str, Clocks]:
     """By decomposition."""
-    made = {name: Clocks(name, {}, {}) for name in DECOMPOSITIONS}
+    made = {name: Clocks(name, {}, {}, {}) for name in DECOMPOSITIONS}
     for job, measured in zip(jobs, found, strict=True):
         made[job.decomposition].drawing_clocks[job.nodes] = measured["drawing"]
         made[job.decomposition].merging_clocks[job.nodes] = measured["merging"]
+        made[job.decomposition].link_words[job.nodes] = measured["words"]
     return made

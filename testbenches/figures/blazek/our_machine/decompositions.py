@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .....golden.cycles.cycle_model import predict_cycles
+from .....golden.objects.making import link_words, triangle_link_words
 from .....golden.specification.card_order import TREE_MERGE
 from .....golden.specification.configuration import MachineConfiguration
 from ....frames.setup_timing import setup_timing
 from ..scenes.screen_parts import Parts, screen_grid_of
 from ..scenes.spheres import Size
+from .forwarded_clocks import forwarded_clocks
 from .our_scene import TRIANGLES, our_objects
 
 Int64 = NDArray[np.int64]
@@ -28,6 +30,9 @@ FOLLOWED = 256
 
 
 Kind = Literal["host", "nodes", "forwarding", "broadcast"]
+
+#: Who makes triangles of objects, where there are several.
+_MAKERS = {"nodes": "nodes", "forwarding": "elements", "broadcast": "controller"}
 
 
 @dataclass(frozen=True)
@@ -55,18 +60,20 @@ class Decomposition:
         return f"{nodes}x({NODE_CARDS}{merge})"
 
     def fields(self, size: Size, nodes: int) -> dict[str, Any]:
-        """Of the machine's configuration, besides the cards; without those that say where triangles
-        are made of objects."""
+        """Of the machine's configuration, besides the cards."""
         fields: dict[str, Any] = {"memory_ports": 2, "clocks_per_pixel": 2, "setup": "hardware"}
+        if self.kind != "host":
+            fields |= {"objects": _MAKERS[self.kind] if nodes > 1 else "controller", "meshes": 1,
+                       "mesh_triangles": TRIANGLES}
         if nodes == 1:
             return fields
-        if self.kind == "host":
+        if self.merges:
             fields["packet"] = self.packet
         elif self.parts == "lines":
             fields["lines"] = True
         elif self.parts is not None:
             grid = screen_grid_of(size, nodes, self.parts)
-            fields["regions"] = grid.columns, grid.count // grid.columns
+            fields |= {"regions": (grid.columns, grid.count // grid.columns), "balance": "static"}
         return fields
 
     def configuration(self, size: Size, nodes: int) -> MachineConfiguration:
@@ -86,22 +93,11 @@ def drawing_clocks(decomposition: Decomposition, size: Size, seed: int, nodes: i
                    spheres: Sequence[int]) -> list[float]:
     """From the first command to the last fragment, for each number of spheres, ascending."""
     machine = decomposition.configuration(size, nodes)
-    if decomposition.kind == "nodes":  # each node is a machine by itself, and all spheres are alike
-        alone = decomposition.configuration(size, 1)
-        busiest = [-(-count // nodes) for count in spheres]
-        asked = sorted(set(busiest))
-        found = dict(zip(asked, _followed(_nested, alone, size, seed, asked), strict=True))
-        return [found[count] for count in busiest]
-    return _followed(_each if decomposition.kind == "host" else _nested, machine, size, seed,
-                     spheres)
-
-
-def _followed(clocks: Callable[[MachineConfiguration, Size, int, Sequence[int]], list[float]],
-              machine: MachineConfiguration, size: Size, seed: int,
-              spheres: Sequence[int]) -> list[float]:
     asked = {count for count in spheres if count <= FOLLOWED}
     if spheres[-1] > FOLLOWED:
         asked |= {FOLLOWED // 2, FOLLOWED}
+    clocks = (_each if decomposition.kind == "host" else
+              _forwarded if machine.forwards_objects else _nested)
     found = dict(zip(sorted(asked), clocks(machine, size, seed, sorted(asked)), strict=True))
     return [found[count] if count in found else _beyond(found, count) for count in spheres]
 
@@ -126,6 +122,30 @@ def _nested(machine: MachineConfiguration, size: Size, seed: int,
     finished = predict_cycles(machine, listed, setup=setup_timing(machine)).finished
     sent = len(finished) * np.array(spheres) // spheres[-1]  # all spheres have as many that are
     return [float(clocks) for clocks in finished[sent - 1]]
+
+
+def _forwarded(machine: MachineConfiguration, size: Size, seed: int,
+               spheres: Sequence[int]) -> list[float]:
+    """Likewise."""
+    timing = setup_timing(machine)
+    assert timing is not None
+    finished = forwarded_clocks(
+        machine, our_objects(size, seed, spheres[-1]).display_list(), timing)
+    return [finished[count - 1] for count in spheres]
+
+
+def words_on_link(decomposition: Decomposition, size: Size, seed: int, nodes: int,
+                  spheres: Sequence[int]) -> list[int]:
+    """32-bit words from the host for a frame, the mesh loaded anew; of each number of spheres."""
+    machine = decomposition.configuration(size, nodes)
+
+    def words(count: int) -> int:
+        listed = our_objects(size, seed, count).display_list()
+        return (triangle_link_words(machine, listed) if machine.objects is None else
+                link_words(machine, listed).total)
+
+    one, two = map(words, (1, 2))
+    return [one + (count - 1) * (two - one) for count in spheres]  # none is clipped
 
 
 def node_of_triangles(decomposition: Decomposition, nodes: int, spheres: int) -> Int64:
