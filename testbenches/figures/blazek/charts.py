@@ -61,9 +61,11 @@ def seeds_chart(methods: Sequence[Times]) -> str:
 
 def sensitivity_chart(sensitivity: Sequence[Sensitivity]) -> str:
     """An ``<svg>`` element: speed-up on the most nodes against what is varied, a panel each."""
-    with _chart((13.0, 3.6)) as figure:
-        panels = figure.subplots(1, len(AXES), sharey=True)
+    with _chart((13.0, 6.6)) as figure:
+        panels = figure.subplots(2, -(-len(AXES) // 2), sharey=True).flat
         _sensitivity_panels(panels, sensitivity)
+        for axes in panels[len(AXES):]:
+            axes.set_visible(False)
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center",
                       frameon=False, fontsize=9, ncols=len(SHOWN))
         return svg_element(figure, "Speed-up on the most nodes against each cost")
@@ -127,7 +129,7 @@ def _own(points: Sequence[Point], method: SpeedUps) -> list[Point]:
 
 
 def _sensitivity_panels(panels: Sequence[Axes], sensitivity: Sequence[Sensitivity]) -> None:
-    for axes, found in zip(panels, sensitivity, strict=True):
+    for axes, found in zip(panels, sensitivity, strict=False):
         axis = axis_of(found.axis)
         for method in SHOWN:
             axes.plot(axis.values, found.speed_up[method], color=COLORS[method], marker="o",

@@ -9,12 +9,13 @@ from .his_machine.costs import COSTS, MICROSECOND
 from .his_machine.methods import Scene
 from .his_machine.sensitivity import (
     BYTE,
+    SCREEN,
     SPHERES,
     TESSELLATING,
     Sensitivity,
     axis_of,
 )
-from .his_machine.times import BROADCAST_STRIPS, LINES, NODE, USUAL_HOST
+from .his_machine.times import BROADCAST_STRIPS, LINES, NODE, STRIPS, USUAL_HOST
 from .our_machine.clocks import Clocks
 from .our_machine.in_rtl import Point
 from .scenes.spheres import SPHERES as ALL_SPHERES
@@ -62,6 +63,14 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
         f"back: {usual:.1f} on {MOST} nodes, {tenth:.1f} at a tenth of that, nearer to the "
         "2.8 megabytes a second of an iPSC/2's links.  Host initiated would gain little: "
         f"{host[byte.values.index(byte.usual / 10)]:.1f}.")
+    screen = axis_of(SCREEN).values.index(128)
+    strips = by_axis[SCREEN][STRIPS][screen]
+    lines.append(
+        "He does not print how large his pictures were, and that matters as much: on a screen of "
+        f"128 × 128 node initiated comes to {by_axis[SCREEN][NODE][screen]:.1f}, and his order "
+        f"comes out but for broadcast: forwarding {strips:.1f} by strips, broadcast "
+        f"{by_axis[SCREEN][LINES][screen]:.1f}, host initiated "
+        f"{by_axis[SCREEN][USUAL_HOST][screen]:.1f}.")
     return lines
 
 

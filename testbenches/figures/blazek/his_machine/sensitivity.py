@@ -47,6 +47,7 @@ TESSELLATING = "tessellating a polygon"
 BYTE = "a byte of a message"
 DRAWING = "drawing, all of it"
 SIZE_OF_SPHERES = "scale of a sphere"
+SCREEN = "side of the screen"
 
 AXES = (
     Axis(TESSELLATING, "µs", COSTS.tessellate / MICROSECOND,
@@ -56,6 +57,8 @@ AXES = (
          _at_costs(lambda value: replace(COSTS, byte=value * MICROSECOND))),
     Axis(DRAWING, "times as much", 1.0, (0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100),
          _at_costs(_drawing)),
+    Axis(SCREEN, "pixels", 512, (64, 96, 128, 192, 256, 384, 512, 768, 1024),
+         lambda size, value: Scene.of((int(value), int(value)), 0, SPHERES)),
     Axis(SIZE_OF_SPHERES, "of half the screen", SCALE, (0.03, 0.05, 0.1, 0.15, 0.25, 0.4, 0.6, 0.9),
          lambda size, value: Scene.of(size, 0, SPHERES, scale=value)),
 )

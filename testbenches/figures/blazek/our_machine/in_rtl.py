@@ -19,8 +19,8 @@ POINT_NODES = 4
 POINT_SPHERES = (4, 16)
 
 #: Of the decompositions.
-POINTS = tuple(name for name in DECOMPOSITIONS
-               if name not in ("host initiated, 10", "host initiated, 1000"))
+POINTS = ("host initiated, 100", "node initiated", "forwarding, strips", "forwarding, grid",
+          "broadcast, lines", "broadcast, strips")
 
 
 @dataclass(frozen=True)
