@@ -21,6 +21,7 @@ from .frames.node_counts import (
     node_figures,
     unit_differences,
 )
+from .frames.object_figures import object_figures
 from .frames.region_figures import region_figures, sent_table
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
@@ -118,6 +119,9 @@ class RenderJob:
                                  policy=self.options.policy(configuration))
         if regions is not None:
             warnings += regions.differences
+        objects = object_figures(configuration, display_list, simulation)
+        if objects is not None:
+            warnings += objects.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
@@ -128,6 +132,7 @@ class RenderJob:
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
             regions=regions,
+            objects=objects,
         )
 
 

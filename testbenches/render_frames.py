@@ -13,6 +13,7 @@ from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
 from .engines.engine import Progress
 from .frames.node_counts import golden_traffic
+from .frames.object_figures import object_figures
 from .frames.rendering import Rendering
 from .frames.setup_timing import setup_timing
 from .machine_options import resolution_warnings
@@ -111,7 +112,8 @@ class FramesJob:
                 if frame.regions is not None for line in frame.regions.differences)),
             wall_seconds=time.perf_counter() - self.began, report=report,
             traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation),
-            regions=shown.regions), report)
+            regions=shown.regions, objects=object_figures(
+                self.configuration, scene.display_list, shown.simulation)), report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

@@ -118,7 +118,7 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         if isinstance(organisation, DealtRegions) else
         [NodeWork(organisation, display_list, node, pipeline, after)
          for node in range(configuration.nodes)])
-    if configuration.objects == "nodes" and setup is not None:
+    if configuration.objects in ("nodes", "controller") and setup is not None:
         return _predict_objects(configuration, display_list, works, pipeline, setup)
     sent, nodes, _ = _sending_order(
         configuration, display_list, np.concatenate([work.primitive for work in works]), retained)
@@ -145,7 +145,7 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
 def _predict_objects(configuration: MachineConfiguration, display_list: DisplayList,
                      works: list[NodeWork], pipeline: Pipeline,
                      setup: SetupTiming) -> CyclePrediction:
-    """Where each node makes the triangles of its objects."""
+    """Where each node makes the triangles of its objects, or the controller those of all."""
     run = ObjectRun(configuration, display_list, works, pipeline, setup)
     made = np.bincount(organisation_of(configuration).shares(display_list).node,
                        minlength=configuration.nodes)

@@ -53,6 +53,13 @@ class LinkWords:
         return self.meshes + self.frame
 
 
+def golden_made(configuration: MachineConfiguration, display_list: DisplayList) -> list[Made]:
+    """Of each place that makes triangles, from left to right."""
+    if configuration.objects == "nodes":
+        return made_at_nodes(configuration, display_list)
+    return [made_at_controller(configuration, display_list)]
+
+
 def made_at_nodes(configuration: MachineConfiguration, display_list: DisplayList) -> list[Made]:
     """Of each node, where they make the triangles of their objects."""
     shares = organisation_of(configuration).shares(display_list)

@@ -85,6 +85,17 @@ def frame_words(configuration: MachineConfiguration, display_list: DisplayList) 
     return list(np.concatenate([sent[whole], triangles])[order])
 
 
+def commands_before(configuration: MachineConfiguration, display_list: DisplayList,
+                    triangle: int) -> int:
+    """How many of ``frame_words`` come before the one that has a triangle made, or sends it."""
+    listed = made_of_objects(display_list)
+    clipped, number = listed.objects.clipped, listed.object_of[triangle]
+    _, place = _shares(configuration, listed)
+    before = place < place[number]
+    earlier = triangle - int(listed.counts[:number].sum()) if clipped[number] else 0
+    return int(np.where(clipped, listed.counts, 1)[before].sum()) + earlier
+
+
 def _vertex(position: Int64, depth: Int64, color: NDArray[np.uint8]) -> dict[str, Any]:
     """The fields of a vertex, or of an object, of many of them."""
     return {"x": position[:, 0].astype(object), "y": position[:, 1].astype(object),

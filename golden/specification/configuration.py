@@ -307,8 +307,9 @@ class MachineConfiguration(MakingFields, DealingFields):
         pixels over its processing element's units: along its line, if it has only one."""
         if self.regions is not None:
             regions = self.dealt_regions
-            line = {} if regions.y_bits else {"share_bits": self.share_bits, "lines": True}
-            return Interlace(self.share_bits, 1 << regions.x_bits, 1 << regions.y_bits, **line)
+            line = regions.y_bits == 0
+            return Interlace(self.share_bits, 1 << regions.x_bits, 1 << regions.y_bits,
+                             share_bits=self.share_bits if line else 0, lines=line)
         return self._interlace_of(self.units)
 
     def pictures(self) -> Sequence[Interlace | RegionedPicture]:

@@ -8,6 +8,8 @@ from pathlib import Path
 import click
 
 from ...golden.planning.scene_needs import fitted
+from ...golden.scene_argument import DESCRIPTION_EXTENSION
+from ...golden.scene_display_list import make_display_list
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
@@ -15,6 +17,7 @@ from ..cocotb_bench.exchange import read_configuration
 from ..cocotb_bench.simulators import SIMULATORS
 from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import Comparison, compare
+from ..frames.object_figures import object_figures
 from ..frames.region_figures import RegionTables
 from ..frames.responses import MachineError, Simulation
 from ..frames.simulation import simulate
@@ -41,6 +44,9 @@ def check_verilog_command(
         stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
     """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.
 
+    In place of a display list it may be a scene file (.scene): a machine that makes the triangles
+    of objects itself is sent these.
+
     \b
     Examples:
       cardcage check-verilog machine.v display_list.npz
@@ -51,7 +57,7 @@ def check_verilog_command(
     documents is broken, 2 the input or the system is at fault or the simulator is missing.
     """
     machine = read_configuration(configuration or verilog.with_suffix(".json"))
-    display_list = DisplayList.load(list_file)
+    display_list = _display_list(machine, list_file)
     _check_match(machine, display_list)
     if waveform is not None and not waveform.parent.is_dir():
         raise InputError(f"--waveform: there is no folder {waveform.parent}")
@@ -72,9 +78,20 @@ def check_verilog_command(
         raise InputError(str(missing)) from None
     comparison = compare(machine, display_list, simulation)
     wrong = [] if tables is None else tables.figures(number, simulation).differences
+    objects = object_figures(machine, display_list, simulation)
+    wrong += [] if objects is None else objects.differences
     click.echo(_summary(simulation, comparison, wrong))
     if wrong or not comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
+
+
+def _display_list(machine: MachineConfiguration, path: Path) -> DisplayList:
+    """Of a file; of a scene, as the machine can draw it."""
+    if path.suffix.lower() == DESCRIPTION_EXTENSION:
+        return make_display_list(path, width=machine.width, height=machine.height,
+                                 depth_bits=machine.depth_bits,
+                                 shading=machine.shading).display_list
+    return DisplayList.load(path)
 
 
 def _text(verilog: Path) -> str:

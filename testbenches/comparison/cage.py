@@ -23,6 +23,7 @@ from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
 from ..frames.compare import Comparison, compare
 from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
+from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
 from ..machine_options import MachineOptions, resolution_warnings
@@ -205,6 +206,7 @@ class CageJob:
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *count_differences(nodes),
              *unit_differences(simulation, golden), *_region_differences(frames.regions),
+             *_object_differences(frames.objects),
              *_view_differences(views)],
             [*resolution_warnings(configuration), *simulation.notes], views, frames.regions)
 
@@ -225,6 +227,10 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
 
 def _region_differences(regions: RegionFigures | None) -> list[str]:
     return [] if regions is None else regions.differences
+
+
+def _object_differences(objects: ObjectFigures | None) -> list[str]:
+    return [] if objects is None else objects.differences
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:

@@ -19,6 +19,7 @@ import numpy as np
 
 from ...golden.balancing.table_policy import Policy
 from ...golden.cycles.frame_clocks import most_frame_clocks
+from ...golden.objects.object_words import commands_before
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.planning.scene_needs import fitted
 from ...golden.reference.triangle_setup import outline
@@ -32,6 +33,7 @@ from ..engines.choose_engine import make_engine
 from ..engines.engine import EngineRun, Job, Scan
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.object_figures import ObjectFigures, object_figures
 from ..frames.region_figures import RegionFigures, RegionTables
 from ..frames.region_host import region_readings, table_commands
 from ..frames.responses import Answers, Simulation
@@ -109,13 +111,17 @@ class FrameSequence:
                 configuration, commands=words,
                 responses=responses_owed(organisation_of(configuration), words),
                 memory_seed=memory_seed,
-                maximum_cycles=FRAMES * most_frame_clocks(configuration, len(words))))
+                maximum_cycles=FRAMES * most_frame_clocks(
+                    configuration, max(len(words), display_list.triangles))))
         answers = Answers(configuration, self._run)
         self.simulation: Simulation = answers.frame(
             FRAMES - 1, reading=0, read_back=0,
             table=None if tables is None else tables.table(FRAMES - 1))
         self.regions: RegionFigures | None = (
             None if tables is None else tables.figures(FRAMES - 1, self.simulation))
+
+        self.objects: ObjectFigures | None = object_figures(configuration, display_list,
+                                                            self.simulation)
 
     def _cycles_of(self, kind: ResponseKind) -> list[int]:
         return [cycle for found, _, cycle in self._run.responses if found == kind]
@@ -152,10 +158,13 @@ class FrameSequence:
         return min(np.subtract(merged, drawn).tolist()) if merged else 0
 
     def _load(self) -> int | None:
-        if not self._configuration.list_words:
+        makes = self._configuration.objects is not None
+        if not self._configuration.list_words and not makes:
             return None
         accepted = self._run.accepted
         assert accepted is not None
+        if makes:  # meshes
+            return int(accepted[self._start] - accepted[0])
         drawn = self._opcodes.index(Opcode.DRAW_LISTS)
         loads = [place for place, opcode in enumerate(self._opcodes) if opcode == Opcode.LOAD]
         return int(accepted[drawn] - accepted[loads[0]]) if loads else 0
@@ -181,6 +190,8 @@ class FrameSequence:
         configuration = self._configuration
         if configuration.list_words:
             return self._opcodes.index(Opcode.DRAW_LISTS)
+        if configuration.objects is not None:
+            return self._start + 1 + commands_before(configuration, self._display_list, triangle)
         organisation = organisation_of(configuration)
         sent = place = organisation.shares(self._display_list).host_place
         if configuration.setup == "host":  # what the host's set-up leaves out is not sent

@@ -53,7 +53,8 @@ def describe(configuration: MachineConfiguration, verilog: str,
     """All about ``verilog``, the text of the component ``name`` (None: of the whole machine).
 
     Keys: ``version``, ``top``, ``configuration`` (every field, and the picture that results),
-    ``ports``, ``number_formats``, ``timing``, ``merging``, ``regions``, ``commands``, ``memories``.
+    ``ports``, ``number_formats``, ``timing``, ``merging``, ``regions``, ``objects``, ``commands``,
+    ``memories``.
     """
     top = name or "machine"
     modules = _modules(verilog)
@@ -62,6 +63,8 @@ def describe(configuration: MachineConfiguration, verilog: str,
                                   *_TIMED_BY_PORTS[configuration.memory_ports])
     if name is None and configuration.setup == "hardware":
         timed += ("triangle_setup",)
+    if name is None and configuration.objects is not None:
+        timed += ("mesh_memory", "object_reader", "object_setup")
     return {
         "version": version("cardcage"),
         "top": top,
@@ -73,6 +76,7 @@ def describe(configuration: MachineConfiguration, verilog: str,
                    for part in timed},
         "merging": _merging(configuration),
         "regions": _regions(configuration),
+        "objects": _objects(configuration),
         "commands": _command_words(configuration),
         "memories": memories(verilog, top),
     }
@@ -126,6 +130,8 @@ def _number_formats(configuration: MachineConfiguration) -> list[dict[str, Any]]
         *([] if c.regions is None else
           [number("element", c.element_bits, "number of a processing element, or one more"),
            number("slot", c.table_bits, "place of a region in its processing element")]),
+        *([] if c.objects is None else
+          [number("mesh", c.mesh_bits, "number of a mesh, or of one more than there can be")]),
     ]
 
 
@@ -169,6 +175,21 @@ def _regions(configuration: MachineConfiguration) -> dict[str, Any] | None:
     }
 
 
+def _objects(configuration: MachineConfiguration) -> dict[str, Any] | None:
+    """Where triangles are made of objects; None where the machine takes triangles only."""
+    if configuration.objects is None:
+        return None
+    return {
+        "place": configuration.objects,
+        "mesh_triangles": configuration.mesh_triangles,
+        "meshes": configuration.meshes,
+        "packet_counts": "objects",
+        "counters": "READ_COUNTERS: of each place that makes triangles MADE and DROPPED, those "
+                    "made of objects and those that set-up dropped there since the frame's start",
+        "explained_in": "docs/decompositions.md",
+    }
+
+
 def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
     bodies = {
         commands.Opcode.FRAME_START: commands.frame_start_layout(),
@@ -178,6 +199,12 @@ def _command_words(configuration: MachineConfiguration) -> dict[str, Any]:
             commands.triangle_layout(configuration) if configuration.setup == "hardware"
             else commands.prepared_triangle_layout(configuration)),
     }
+    if configuration.objects is not None:
+        bodies |= {
+            commands.Opcode.MESH: commands.mesh_layout(configuration),
+            commands.Opcode.MESH_TRIANGLE: commands.mesh_triangle_layout(configuration),
+            commands.Opcode.OBJECT: commands.object_layout(configuration),
+        }
     if configuration.regions is not None:
         bodies[commands.Opcode.REGION] = commands.region_layout(configuration)
     return {

@@ -9,7 +9,6 @@ from ...golden.cycles.node_work import share_of_node
 from ...golden.merging.cage import merge_cage
 from ...golden.merging.direct import DirectTraffic
 from ...golden.merging.traffic import Traffic
-from ...golden.objects.making import made_at_nodes
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.reference.exact import depth_complexity
 from ...golden.specification.configuration import MachineConfiguration
@@ -21,19 +20,13 @@ from .responses import Simulation
 class NodeFigures:
     """What one node did for a picture, in the machine's own count, and golden's.
 
-    ``sent``     pixels to the next node, to frame units, to memory units, or to the pins
-    ``made``     triangles that it made of objects
-    ``dropped``  of these, and of those that came as vertices, what its set-up dropped
+    ``sent``  pixels to the next node, to frame units, to memory units, or to the pins
     """
 
     fragments: int
     golden_fragments: int
     sent: int
     golden_sent: int
-    made: int = 0
-    golden_made: int = 0
-    dropped: int = 0
-    golden_dropped: int = 0
 
 
 def golden_traffic(configuration: MachineConfiguration, display_list: DisplayList,
@@ -52,18 +45,12 @@ def node_figures(configuration: MachineConfiguration, display_list: DisplayList,
     sent, golden_sent = simulation.sent or [0], golden.sent
     if configuration.scans_rank:  # the last one's: to the pins
         golden_sent[-1] = configuration.width * configuration.height
-    made = (made_at_nodes(configuration, display_list) if configuration.objects == "nodes"
-            else None)
     return [NodeFigures(
         fragments=sum(work.fragments for work in simulation.work if work.node == node),
         golden_fragments=int(depth_complexity(
             share_of_node(configuration, display_list, node)[1],
             **organisation.resolution.shifts).sum()),
-        sent=sent[node], golden_sent=golden_sent[node],
-        **({} if made is None else {
-            "made": simulation.made[node], "golden_made": made[node].made,
-            "dropped": simulation.dropped[node], "golden_dropped": made[node].dropped}))
-        for node in range(organisation.nodes)]
+        sent=sent[node], golden_sent=golden_sent[node]) for node in range(organisation.nodes)]
 
 
 def count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
@@ -72,9 +59,7 @@ def count_differences(nodes: Sequence[NodeFigures]) -> list[str]:
             for number, node in enumerate(nodes)
             for verb, what, got, wanted in (
                 ("drew", "fragments", node.fragments, node.golden_fragments),
-                ("sent", "pixels", node.sent, node.golden_sent),
-                ("made", "triangles", node.made, node.golden_made),
-                ("dropped", "triangles", node.dropped, node.golden_dropped))
+                ("sent", "pixels", node.sent, node.golden_sent))
             if got != wanted]
 
 

@@ -9,6 +9,7 @@ from ...golden.merging.traffic import Traffic
 from ...golden.scene_display_list import SceneDisplayList
 from ...golden.specification.configuration import MachineConfiguration
 from .compare import Comparison
+from .object_figures import ObjectFigures
 from .region_figures import RegionFigures
 from .responses import Simulation
 
@@ -24,6 +25,7 @@ class Rendering:
     ``traffic``       what is sent to merge its picture, by the golden model; None where there is
                       one node, or nodes were not asked for their counts
     ``regions``       what regions cost that are dealt out; None where there are none
+    ``objects``       what was made of objects; None where the machine takes none
     """
 
     scene: SceneDisplayList
@@ -36,6 +38,7 @@ class Rendering:
     report: Path | None = None
     traffic: Traffic | None = None
     regions: RegionFigures | None = None
+    objects: ObjectFigures | None = None
 
     @property
     def fragments(self) -> int:

@@ -10,6 +10,7 @@ from ..engines.activity_record import ACTIVITY_KINDS, ActivityRecord
 from ..frames.compare import FirstDifference, PixelValue
 from ..frames.rendering import Rendering
 from ..frames.responses import Simulation
+from .object_facts import object_facts
 from .region_facts import region_facts
 
 
@@ -53,6 +54,7 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         ],
         "merging": merging_facts(rendering),
         "regions": region_facts(rendering.regions),
+        "objects": object_facts(rendering.objects),
         "activity": _activity(simulation.activity),
         "engine": simulation.engine,
         "simulated_cycles_per_second": rendering.cycles_per_second,

@@ -1,8 +1,10 @@
-"""Clocks that nodes take which make the triangles of their objects themselves.
+"""Clocks that nodes take which make the triangles of their objects themselves, or a cage of one
+node whose controller does so.
 
 The controller broadcasts an object a clock, each for one node, whose queue it waits for.  Behind
 it every node is by itself: its reader and its set-up make triangles as fast as set-up does, and its
-processing elements draw them as those of any node (``cycle_model``).
+processing elements draw them as those of any node (``cycle_model``).  Where the controller makes
+them its own queue is the only one, and takes each object in the clock of its command.
 """
 
 from __future__ import annotations
@@ -37,9 +39,11 @@ class ObjectRun:
     def __init__(self, configuration: MachineConfiguration, display_list: DisplayList,
                  works: list[NodeWork], pipeline: Pipeline, setup: SetupTiming) -> None:
         listed = made_of_objects(display_list)
-        shares = organisation_of(configuration).shares(listed)
-        assert isinstance(shares, ObjectShares)
         clipped = listed.objects.clipped
+        nodes, order = np.zeros(len(clipped), np.int64), np.arange(len(clipped))
+        shares = organisation_of(configuration).shares(listed)
+        if isinstance(shares, ObjectShares):
+            nodes, order = shares.objects.node, shares.objects.host_order
         first = np.cumsum(listed.counts) - listed.counts
         self._places = [_places(work.primitive, listed.object_of, first, len(clipped))
                         for work in works]
@@ -50,8 +54,8 @@ class ObjectRun:
         self._sent = -1.0
         self.finished: list[float] = []
         self.commands = 0
-        for number in shares.objects.host_order.tolist():
-            self._draw(int(shares.objects.node[number]), number, int(listed.counts[number]),
+        for number in order.tolist():
+            self._draw(int(nodes[number]), number, int(listed.counts[number]),
                        bool(clipped[number]))
         self.kept = np.array([len(work.primitive) for work in works])
 

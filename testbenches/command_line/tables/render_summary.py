@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ....golden.organisations.organisation_of import organisation_of
 from ...frames.compare import FirstDifference
+from ...frames.object_figures import ObjectFigures
 from ...frames.region_figures import RegionFigures
 from ...frames.rendering import Rendering
 from ...render_frames import FramesRendering
@@ -22,6 +23,7 @@ def render_summary(rendering: Rendering) -> str:
               f"{width}x{height}"),
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
         *([] if rendering.regions is None else [_line("regions", _regions([rendering.regions]))]),
+        *([] if rendering.objects is None else [_line("objects", _objects(rendering.objects))]),
         _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw"
               + ("" if simulation.merge_cycles is None else
                  f", {simulation.merge_cycles - simulation.draw_cycles:,} to merge") + "; "
@@ -82,6 +84,17 @@ def _regions(figures: Sequence[RegionFigures]) -> str:
     return (f"{regions.columns}x{regions.rows} of {1 << regions.x_bits}x{1 << regions.y_bits} "
             f"pixels, {balance}; utilisation {span}"
             + (f"; COUNTS DIFFER in {wrong:,} pictures" if wrong else ""))
+
+
+def _objects(figures: ObjectFigures) -> str:
+    """What was sent and made."""
+    made = [each.made for each in figures.golden]
+    return (f"{figures.objects:,} of {figures.meshes:,} meshes, {sum(made):,} triangles made "
+            f"in {len(made)} {figures.configuration.objects}"
+            + (f", {figures.clipped:,} objects sent as triangles" if figures.clipped else "")
+            + f"; {figures.words.total:,} words on the host link, {figures.words.meshes:,} of them "
+            f"meshes, instead of {figures.triangle_words:,}"
+            + ("; COUNTS DIFFER" if figures.differences else ""))
 
 
 def frames_summary(rendering: FramesRendering) -> str:

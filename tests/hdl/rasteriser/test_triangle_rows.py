@@ -5,7 +5,16 @@ import random
 import pytest
 from amaranth.hdl import Cat
 from hdl_bench.bench import Drive, Watch, simulate
-from hdl_bench.domains import IN_LINES, IN_SQUARES, MACHINES, SETTLED, Lattice, blocks, domain, masked
+from hdl_bench.domains import (
+    IN_LINES,
+    IN_SQUARES,
+    MACHINES,
+    SETTLED,
+    Lattice,
+    blocks,
+    domain,
+    masked,
+)
 from hdl_bench.pictures import small_machine
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
 

@@ -1,0 +1,33 @@
+"""What was made of objects, as plain numbers, lists and words."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from ..frames.object_figures import ObjectFigures
+
+
+def object_facts(figures: ObjectFigures | None) -> dict[str, Any] | None:
+    """Of one picture; None where the machine takes no objects."""
+    if figures is None:
+        return None
+    return {
+        "place": figures.configuration.objects,
+        "objects": figures.objects,
+        "clipped": figures.clipped,
+        "meshes": figures.meshes,
+        "mesh_triangles": figures.mesh_triangles,
+        "link_words": asdict(figures.words) | {"total": figures.words.total},
+        "golden_link_words": asdict(figures.golden_words) | {"total": figures.golden_words.total},
+        "link_words_of_triangles": figures.triangle_words,
+        "read": figures.made is not None,
+        "per_place": [
+            {"objects": golden.objects, "golden_made": golden.made,
+             "golden_dropped": golden.dropped, "sent": golden.sent,
+             **({} if figures.made is None or figures.dropped is None else {
+                 "made": figures.made[place], "dropped": figures.dropped[place]})}
+            for place, golden in enumerate(figures.golden)],
+        "equal": not figures.differences,
+        "differences": figures.differences,
+    }

@@ -1,0 +1,1 @@
+"""Experiments with objects of which the machine makes triangles."""
