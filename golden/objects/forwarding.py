@@ -13,7 +13,7 @@ from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.sampling_grid import Grid
 from .forwarded_objects import ForwardedObjects
-from .making import Made
+from .made import Made
 from .object_boxes import ObjectBoxes
 from .object_words import made_of_objects
 

@@ -64,4 +64,4 @@ class ObjectBoxes:
         down = ((rows >= self.top[:, np.newaxis] >> regions.y_bits)
                 & (rows <= self.bottom[:, np.newaxis] >> regions.y_bits))
         met = down[:, :, np.newaxis] & across[:, np.newaxis]
-        return np.asarray(met.reshape(len(self), -1) & ~self.empty[:, np.newaxis])
+        return np.asarray(met.reshape(len(self), regions.count) & ~self.empty[:, np.newaxis])

@@ -1,5 +1,7 @@
 """The processing element that makes triangles of objects, and passes these on to its neighbours."""
 
+from itertools import pairwise
+
 from amaranth.hdl import *
 from amaranth.lib import memory, stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -26,8 +28,10 @@ class ForwardingElement(ProcessingElement):
     Objects come in any order, so every pixel keeps its object's number below its depth, and the
     depth test compares both.
 
-    Members: those of ``ProcessingElement``, and
+    Besides the members of ``ProcessingElement`` it has these.
 
+    Members
+    -------
     from_left, from_right: In(stream of reaching_object_layout)
     to_left, to_right: Out(stream of reaching_object_layout)
         Objects of the neighbouring processing elements (``ObjectForwarder``).
@@ -82,7 +86,7 @@ class ForwardingElement(ProcessingElement):
 def connect_forwarding(m: Module, elements: list[ForwardingElement]) -> None:
     """The channels between neighbours; beyond the first element and the last one there is
     nobody."""
-    for number, (one, other) in enumerate(zip(elements, elements[1:], strict=False)):
+    for number, (one, other) in enumerate(pairwise(elements)):
         part = wires(m, f"channel_{number}_wires")
         wiring.connect(part, one.to_right, other.from_left)
         wiring.connect(part, other.to_left, one.from_right)

@@ -91,6 +91,8 @@ def _objects(figures: ObjectFigures) -> str:
     made = [each.made for each in figures.golden]
     return (f"{figures.objects:,} of {figures.meshes:,} meshes, {sum(made):,} triangles made "
             f"in {len(made)} {figures.configuration.objects}"
+            + (f", {sum(map(sum, figures.golden_forwarded)):,} times passed on"
+               if figures.golden_forwarded else "")
             + (f", {figures.clipped:,} objects sent as triangles" if figures.clipped else "")
             + f"; {figures.words.total:,} words on the host link, {figures.words.meshes:,} of them "
             f"meshes, instead of {figures.triangle_words:,}"

@@ -1,6 +1,7 @@
 """A row of forwarders, as processing elements have them, and who draws what by the golden model."""
 
 from collections import Counter
+from itertools import pairwise
 
 import numpy as np
 from amaranth.hdl import Module
@@ -48,7 +49,7 @@ class ForwarderRow(wiring.Component):
             ]
             wiring.connect(m, wiring.flipped(self.host[number]), forwarder.host)
             wiring.connect(m, forwarder.drawn, wiring.flipped(self.drawn[number]))
-        for one, other in zip(self.forwarders, self.forwarders[1:], strict=False):
+        for one, other in pairwise(self.forwarders):
             wiring.connect(m, one.to_right, other.from_left)
             wiring.connect(m, other.to_left, one.from_right)
         m.d.comb += [self.forwarders[0].to_left.ready.eq(1),
