@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -120,8 +121,8 @@ def _efficiencies(axes: Axes, method: SpeedUps, points: Sequence[Point]) -> None
 
 
 #: Of a point that was measured.
-_MARK = {"marker": "s", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1.6,
-         "color": POINT_COLOR}
+_MARK: dict[str, Any] = {"marker": "s", "markersize": 7, "markerfacecolor": "none",
+                         "markeredgewidth": 1.6, "color": POINT_COLOR}
 
 
 def _own(points: Sequence[Point], method: SpeedUps) -> list[Point]:

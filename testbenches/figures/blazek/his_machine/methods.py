@@ -106,8 +106,8 @@ def node_initiated(scene: Scene, nodes: int) -> Frame:
 
 def forwarding(scene: Scene, nodes: int, parts: Parts = "strips") -> Frame:
     """The same, but each node has a part of the screen, and passes on what lies elsewhere."""
-    drawing = scene.drawing(nodes, parts)
-    visits = [np.flatnonzero(row).tolist() for row in drawing]
+    work, drawing = scene.work(nodes, parts), scene.drawing(nodes, parts)
+    visits = [np.flatnonzero(row).tolist() for row in work.polygons]
     arrival = _objects_arrive(scene)
     home = (np.arange(scene.spheres) % nodes).tolist()
     done, busy = forwarded(
@@ -130,13 +130,13 @@ def broadcast(scene: Scene, nodes: int, parts: Parts = "lines",
     message = costs.object_message
     if not hierarchical:
         sent = np.arange(scene.spheres * nodes).reshape(-1, nodes) + 1
-        arrivals = costs.parse * (1 + np.arange(scene.spheres))[:, None] + message * sent
-        done = [_last(served(arrivals[:, node], own[:, node])) for node in range(nodes)]
-        return _frame(scene, done, float(own.sum()), arrivals[:, -1], _pasted)
+        each = costs.parse * (1 + np.arange(scene.spheres))[:, None] + message * sent
+        done = [_last(served(each[:, node], own[:, node])) for node in range(nodes)]
+        return _frame(scene, done, float(own.sum()), each[:, -1], _pasted)
     arrivals = {0: _objects_arrive(scene)}
     done, busy = [], 0.0
     for node in range(nodes):
-        children = [node + (1 << bit) for bit in reversed(range(nodes.bit_length()))
+        children = [node + (1 << bit) for bit in range(nodes.bit_length())
                     if node < 1 << bit and node + (1 << bit) < nodes]
         work = message * len(children) + own[:, node]
         ends = served(arrivals[node], work)

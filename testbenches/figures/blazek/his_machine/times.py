@@ -92,7 +92,7 @@ class Times(SpeedUps):
 
     def mean_of(self, field: str, spheres: int, nodes: int) -> float:
         """Of a field of ``Frame``."""
-        return mean(getattr(frame, field) for frame in self.of(spheres, nodes))
+        return mean(float(getattr(frame, field)) for frame in self.of(spheres, nodes))
 
     def balance(self, spheres: int, nodes: int) -> float:
         """What the nodes are at work of the time until the last one has drawn."""

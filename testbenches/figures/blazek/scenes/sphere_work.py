@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +37,8 @@ class Work:
     lines: Int64
     pixels: Int64
 
-    def __getitem__(self, index: object) -> Work:
-        return Work(self.polygons[index], self.lines[index], self.pixels[index])  # type: ignore[index]
+    def __getitem__(self, index: Any) -> Work:
+        return Work(self.polygons[index], self.lines[index], self.pixels[index])
 
 
 def sphere_polygons(cuts: int = CUTS) -> Float64:

@@ -36,4 +36,5 @@ def sphere_places(size: Size, seed: int, count: int, scale: float = SCALE) -> In
     is seen.  Fewer of a seed are the first of many."""
     reach = sphere_reach(sphere_radius(size, scale))
     room = np.array(size) - 2 * reach + 1
-    return reach + np.floor(RandomNumbers(seed).uniform(count, 2) * room).astype(np.int64)
+    places = reach + np.floor(RandomNumbers(seed).uniform(count, 2) * room)
+    return np.asarray(places, np.int64)
