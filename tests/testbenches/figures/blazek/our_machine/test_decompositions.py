@@ -82,4 +82,4 @@ def test_all_spheres_are_alike():
     assert (listed.offset[:, :2] % (1 << listed.picture.sub_bits) == 0).all()
     assert (our_objects(SIZE, 2, 2).offset == listed.offset[:2]).all()
     depth = listed.display_list().depth
-    assert 0 <= depth.min() and depth.max() <= listed.picture.depth_limit
+    assert depth.min() >= 0 and depth.max() <= listed.picture.depth_limit
