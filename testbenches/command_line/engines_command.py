@@ -14,6 +14,7 @@ from ...golden.scene_display_list import make_display_list
 from ...golden.specification.errors import InputError
 from ..engines.verilator_tool import ToolMissingError
 from ..support.progress import busy
+from .command_options import RegionCounts
 
 
 @click.command(name="engines")
@@ -22,13 +23,16 @@ from ..support.progress import busy
 @click.option("--scene", default="teapot:tessellation=8", show_default=True, help="What it draws.")
 @click.option("--cards", metavar="CARDS", help="Instead of the preset's.")
 @click.option("--retain", is_flag=True, help="Nodes keep their triangles in list memories.")
+@click.option("--regions", type=RegionCounts(), metavar="COLUMNSxROWS",
+              help="Deal so many regions of the screen out, one after another.")
 @click.option("--runs", type=click.IntRange(1), default=5, show_default=True,
               help="Of which the median counts.")
 @click.option("--pysim-cycles", type=click.IntRange(1), default=2048, show_default=True,
               help="Cycles of the slow engine that are waited for.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: one object.")
-def engines_command(name: str, scene: str, cards: str | None, retain: bool, runs: int,
-                    pysim_cycles: int, as_json: bool) -> None:
+def engines_command(name: str, scene: str, cards: str | None, retain: bool,
+                    regions: tuple[int, int] | None, runs: int, pysim_cycles: int,
+                    as_json: bool) -> None:
     """Measure how fast the simulators are on this computer.
 
     Simulated cycles a second of one frame: through the Verilator engine, in a bare loop that only
@@ -39,13 +43,14 @@ def engines_command(name: str, scene: str, cards: str | None, retain: bool, runs
       cardcage engines
       cardcage engines --preset small --scene teapot
       cardcage engines --cards '16x(PMMC)' --retain --scene teapot:tessellation=29
+      cardcage engines --cards '16x(PMM)' --regions 16x8
     """
     from ..speed.engine_speed import measure_engines  # loads Amaranth
 
     size: dict[str, Any] = {axis: PRESETS[name][axis] for axis in ("width", "height")}
     display_list = make_display_list(scene, **size).display_list
     asked = PRESETS[name] | {"fraction_bits": None} | ({"cards": cards} if cards else {})
-    machine = plan(display_list, retain=retain, **asked).configuration
+    machine = plan(display_list, retain=retain, regions=regions, **asked).configuration
     try:
         with busy("measuring engines"):
             speed = measure_engines(machine, display_list, runs=runs, pysim_cycles=pysim_cycles)

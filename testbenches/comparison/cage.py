@@ -124,6 +124,8 @@ class CageRun:
     ``warnings``     a line each
     ``views``        of all views that were asked for; all else is of the first one
     ``regions``      of the frame that is measured; None where none are dealt out
+    ``objects``      likewise; None where the machine takes none
+    ``link_words``   of 32 bits, on the host link for the first frame, meshes or lists included
     """
 
     cage: Cage
@@ -140,6 +142,8 @@ class CageRun:
     warnings: Sequence[str]
     views: Sequence[ViewFigures] = ()
     regions: RegionFigures | None = None
+    objects: ObjectFigures | None = None
+    link_words: int = 0
 
     @property
     def fragments(self) -> int:
@@ -212,7 +216,8 @@ class CageJob:
              *unit_differences(simulation, golden), *_region_differences(frames.regions),
              *_object_differences(frames.objects),
              *_view_differences(views)],
-            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions)
+            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions,
+            frames.objects, frames.link_words)
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:

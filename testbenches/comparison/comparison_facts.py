@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ...golden.organisations.machine_facts import machine_facts
+from ..reports.object_facts import object_facts
 from ..reports.region_facts import region_facts
 from .cage import CageRun
 from .compare_cages import CageComparison
@@ -92,6 +93,8 @@ def cage_facts(run: CageRun) -> dict[str, Any]:
                    "memories": [asdict(memory) for memory in run.memories]},
         "cells": run.cells,
         "regions": region_facts(run.regions),
+        "objects": object_facts(run.objects),
+        "link_words": run.link_words,
         "views": _views(run),
         "engine": simulation.engine,
         "simulated_cycles": simulation.cycles,

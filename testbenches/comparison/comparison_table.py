@@ -7,6 +7,7 @@ from dataclasses import astuple
 from itertools import groupby
 
 from ...golden.organisations.organisation_of import organisation_of
+from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
 from ..support.text_table import TextTable, print_tables, tables_text
 from .cage import CageRun
@@ -19,6 +20,9 @@ OF_VIEWS = "over all views: least / mean / greatest"
 
 #: What is told only where some cage has regions.
 OF_REGIONS = "regions dealt out"
+
+#: What is told only where some cage makes triangles of objects.
+OF_OBJECTS = "objects"
 
 #: Stands for a figure that a cage does not have.
 NOTHING = "-"
@@ -37,6 +41,10 @@ def _sent(figure: Callable[[CageRun], int]) -> Callable[[CageRun], str]:
 
 def _of_regions(figure: Callable[[RegionFigures], str]) -> Callable[[CageRun], str]:
     return lambda run: NOTHING if run.regions is None else figure(run.regions)
+
+
+def _of_objects(figure: Callable[[ObjectFigures], str]) -> Callable[[CageRun], str]:
+    return lambda run: NOTHING if run.objects is None else figure(run.objects)
 
 
 def _cells(name: str) -> Callable[[CageRun], str]:
@@ -75,6 +83,12 @@ FIGURES: dict[str, Rows] = {
         "of the busiest element": _of_regions(
             lambda regions: f"{int(regions.loads.max()):,} {regions.counted}"),
     },
+    OF_OBJECTS: {
+        "their triangles are made in": lambda run: run.configuration.objects or "the host",
+        "triangles made at the busiest place": _of_objects(
+            lambda objects: f"{max(each.made for each in objects.golden):,}"),
+        "words on the host link, meshes or lists included": lambda run: f"{run.link_words:,}",
+    },
     "sent between nodes": {
         "pixels": _sent(lambda run: run.traffic.pixels),
         "pixels on the busiest link": _sent(lambda run: run.traffic.busiest_piece),
@@ -107,6 +121,8 @@ def figures(comparison: CageComparison) -> dict[str, list[tuple[str, list[str]]]
         left_out.add(OF_VIEWS)
     if all(run.regions is None for run in comparison.runs):
         left_out.add(OF_REGIONS)
+    if all(run.objects is None for run in comparison.runs):
+        left_out.add(OF_OBJECTS)
     return {heading: [(name, [figure(run) for run in comparison.runs])
                       for name, figure in rows.items()]
             for heading, rows in FIGURES.items() if heading not in left_out}

@@ -123,6 +123,11 @@ class FrameSequence:
         self.objects: ObjectFigures | None = object_figures(configuration, display_list,
                                                             self.simulation)
 
+    @property
+    def link_words(self) -> int:
+        """Of 32 bits, of the first frame and what is loaded for it."""
+        return len(self._opcodes) * commands.command_words(self._configuration)
+
     def _cycles_of(self, kind: ResponseKind) -> list[int]:
         return [cycle for found, _, cycle in self._run.responses if found == kind]
 

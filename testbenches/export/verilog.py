@@ -23,6 +23,7 @@ from amaranth.lib import memory, wiring
 
 from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.machine import Machine, boards_of
+from ..support.garbage_collector import collector_paused
 from .plain_netlist import plain_netlist
 
 __all__ = [
@@ -196,8 +197,9 @@ def _translated(components: dict[str, wiring.Component]) -> str:
     """Modules in the order of ``components``, the top first, each followed by its parts; memories
     last.  What nothing instantiates is left out."""
     platform = _VerilogPlatform()
-    texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
-             for name, component in components.items()]
+    with collector_paused():
+        texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
+                 for name, component in components.items()]
     netlist = plain_netlist(run_yosys(texts, _TO_NETLIST))
     text = run_yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
     # Parts are named by their path: nothing that needs escaping but Verilog's own words.

@@ -18,6 +18,11 @@ from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.direct.direct_work import CROSSBAR_LATENCY
 from cardcage.golden.cycles.direct.unit_ports import OnePortUnits
 from cardcage.golden.cycles.element_latencies import PIPELINE, Pipeline
+from cardcage.golden.cycles.objects.object_setup import (
+    MAKING_LATENCY,
+    OBJECTS_WAITING,
+    QUEUE_LATENCY,
+)
 from cardcage.golden.cycles.one_port_lanes import LANE_START
 from cardcage.golden.cycles.received_pixels import LANE_CLOCKS
 from cardcage.golden.specification import commands
@@ -29,6 +34,8 @@ from cardcage.hdl.depth_test.one_port_lane import OnePortLane
 from cardcage.hdl.depth_test.two_ports import TwoPortDepthTest
 from cardcage.hdl.direct.crossbar import Crossbar
 from cardcage.hdl.nodes.node_gate import NodeGate
+from cardcage.hdl.objects.object_reader import ObjectReader
+from cardcage.hdl.objects.object_setup import ObjectSetup
 from cardcage.hdl.processing_element.broadcast_queue import BroadcastQueue
 from cardcage.hdl.processing_element.drawing_element import SPANS_LATENCY
 from cardcage.hdl.rasteriser.fragment_stepper import FragmentStepper
@@ -70,6 +77,12 @@ def test_a_crossbar():
 
 def test_set_up():
     assert SetupTiming(interval=3).leaving == TriangleSetup.leaving
+
+
+def test_objects():
+    assert ObjectSetup.depth == OBJECTS_WAITING
+    assert ObjectSetup.queue_latency == QUEUE_LATENCY
+    assert ObjectSetup.queue_latency + ObjectReader.latency == MAKING_LATENCY
 
 
 def test_lists():

@@ -80,7 +80,7 @@ def owed(configuration, words):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@pytest.mark.parametrize("seed", [None, 0, 1])
+@pytest.mark.parametrize("seed", [None, 0])
 def test_each_frame_has_the_table_packed_by_the_last_one(name, seed):
     """Also read in between, and with counts that the host reads for itself; of a frame that was
     never begun nothing is counted."""

@@ -33,7 +33,7 @@ BOOTS = {
 
 
 @pytest.mark.parametrize("name", BOOTS)
-@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("seed", [None, 1])
 def test_boot(name, seed):
     cards, changes, domains = BOOTS[name]
     configuration = small_machine(cards, **changes)
@@ -104,7 +104,7 @@ def triangles(configuration, seed, count=12):
     return list(triangle_words.prepared_triangles(configuration, prepare(configuration, scene)))
 
 
-@pytest.mark.parametrize("seed", [None, 0, 1, 2, 3])
+@pytest.mark.parametrize("seed", [None, 0, 1])
 def test_frames(seed):
     """Packets in order; drawn when all are done, shown from the next scan's start on."""
     pick = random.Random(f"frames {seed}")

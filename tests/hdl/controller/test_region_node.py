@@ -133,7 +133,7 @@ def test_boot(name):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@pytest.mark.parametrize("seed", [None, 0, 1])
+@pytest.mark.parametrize("seed", [None, 0])
 def test_tables_between_frames(name, seed):
     """Good ones, and ones with something wrong; frames that are abandoned, and late."""
     pick = random.Random(f"{name} {seed}")
@@ -149,7 +149,7 @@ def test_random_words_have_every_fault():
     """Or else the test before this one would not test them."""
     found = set()
     for name in MACHINES:
-        for seed in (None, 0, 1):
+        for seed in (None, 0):
             pick = random.Random(f"{name} {seed}")
             answers, _ = expected_of(machine(name), random_words(pick, machine(name), 12))
             found |= {value for kind, value in answers if kind == ResponseKind.ERROR}

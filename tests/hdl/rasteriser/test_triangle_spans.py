@@ -143,7 +143,7 @@ def run(configuration, display_list, first, end, pause):
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize(("seed", "skew"), [(0, False), (1, False), (2, True)])
+@pytest.mark.parametrize(("seed", "skew"), [(0, False), (1, True)])
 def test_spans_are_the_covered_pixels_of_the_domain(machine, seed, skew):
     cards, (first, end), words, (width, height) = MACHINES[machine]
     configuration = small_machine(cards, width, height, words=words, skew=skew)
@@ -168,7 +168,7 @@ def test_latency_and_throughput(machine, skew):
 
 
 @pytest.mark.parametrize("machine", IN_SQUARES)
-@pytest.mark.parametrize("seed", [None, 0, 1])
+@pytest.mark.parametrize("seed", [None, 0])
 def test_spans_in_squares(machine, seed):
     """Row by row a span for each square; without pauses a span a clock, an empty row one too."""
     cards, block, (first, end), (width, height) = IN_SQUARES[machine]

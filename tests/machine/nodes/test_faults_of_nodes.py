@@ -114,10 +114,8 @@ def cage(cards, **options):
 
 @pytest.mark.parametrize(("cards", "nodes", "fault"), [
     ("PMMMMC PMMC", [4, 2], Fault.NODES_DIFFER),
-    ("PMMT PMMT PMT", [2, 2, 1], Fault.NODES_DIFFER),
     ("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED),
     ("PMMC PC PMMC", [2, 0, 2], Fault.UNITS_UNSUPPORTED),
-    ("PMMMMS PMMS F", [4, 2], Fault.NODES_DIFFER),
     ("PMMS PMMS FFF", [2, 2], Fault.UNITS_UNSUPPORTED),
     ("PMMS PMS FFF", [2, 1], Fault.UNITS_UNSUPPORTED),
     ("PPDMMM", [3, 3], Fault.UNITS_UNSUPPORTED),
@@ -144,8 +142,6 @@ def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
 @pytest.mark.parametrize(("cards", "resolution"), [
     ("PMMMMC PMMMMC", (8, 8)),  # of five nodes
     ("PMMT PPMMT PMMPT", (8, 4)),  # and two units of each
-    ("PMC PMC PMC", (4, 4)),
-    ("PMMMMS PMMMMS F", (8, 8)),
     ("PMMS PPMMS PMMPS FF", (8, 4)),
     ("PMS PMS PMS FFFF", (4, 4)),
     ("PPPDMM", (8, 4)),

@@ -22,11 +22,10 @@ SEEDS = range(4)
 
 CAGES = {
     "one unit": ("2x(PMT)", {}),
-    "two units": ("4x(PMMT)", {}),
     "units that alternate along rows": ("4x(PMMT)", {"skew": True}),
     "two elements": ("4x(PMPMT)", {}),
     "four units": ("3x(PMMMMT)", {}),
-    "a run of the list for each of sixteen": ("16x(PMMT)", {"packet": "contiguous"}),
+    "a run of the list for each of eight": ("8x(PMMT)", {"packet": "contiguous"}),
 }
 
 

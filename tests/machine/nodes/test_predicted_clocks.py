@@ -32,24 +32,19 @@ BUSES = {
     "units with one port": ("4x(PMMS)FF", {"memory_ports": 1}),
     "a run of the list for each of five": ("5x(PMS)F", {"memory_ports": 2,
                                                         "packet": "contiguous"}),
-    "eight units": ("2x(PMMMMMMMMS)FF", {"memory_ports": 2}),
 }
 
 CROSSBARS = {
     "four for two": ("4xP D 2xM", {"memory_ports": 2, "queue": 2}),
-    "one queue for each element": ("4xP D 4xM", {"memory_ports": 2, "queue": "element"}),
-    "more units than elements": ("3xP D 8xM", {"memory_ports": 2, "packet": "contiguous"}),
-    # Nobody tells the model where the scan is, so it must not have much of a port.
-    "units with one port": ("4xP D 4xM", {"memory_ports": 1, "clocks_per_pixel": 6}),
+    "one queue for each element": ("3xP D 4xM", {"memory_ports": 2, "queue": "element",
+                                                 "packet": "contiguous"}),
 }
 
 #: Crossbars before units with one port, where the model is told where the scan is.
 SCANNED = {
     "one of each, half of whose clocks are the scan's": ("PDM", {}),
-    "two for two": ("PPDMM", {"packet": "contiguous"}),
     "four for four, one queue for each element": ("4xP D 4xM", {"queue": "element"}),
     "a coarser picture": ("3xP D 4xM", {"words": 256, "queue": 2}),
-    "few clocks of the scan's": ("4xP D 2xM", {"clocks_per_pixel": 5}),
 }
 
 

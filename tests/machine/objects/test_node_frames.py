@@ -8,12 +8,14 @@ import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, check_merged, compiled, run
 from object_bench.objects import object_machine, random_objects
 
+from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_nodes
 from cardcage.golden.objects.object_words import frame_words
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.frames.setup_timing import setup_timing
 
 #: Machines that are compiled once for all tests.
 MODELS = {
@@ -23,6 +25,10 @@ MODELS = {
                                 "setup_interval": 64}),
 }
 MESHES = (0, 1, 2, 3, 7)
+
+#: Clocks from the frame's start until its first object is broadcast, and from its last command
+#: until the machine is seen to be done.
+COMMANDS = 8
 
 
 def machine(name):
@@ -109,3 +115,24 @@ def test_objects_that_are_refused(name):
         np.testing.assert_array_equal(pictures[number], pictures[0])
     for number in (2, 3, 4):
         assert (pictures[number] == listed.background).all()
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_drawing_takes_the_predicted_clocks(name, record_property):
+    """Within 2 % and the clocks of a command or two, of which these short frames are all."""
+    configuration = machine(name)
+    timing = setup_timing(configuration)
+    drawn = lists(configuration)[:2]
+    for triangles in ((7, 7), (1, 0), (3,)):
+        drawn.append(random_objects(configuration, 32, 7, triangles,
+                                    flat=configuration.shading == "flat").display_list())
+    answers = Answers(configuration, run(configuration, read(
+        frame_commands(configuration, listed) for listed in drawn), compiled()))
+    errors = []
+    for number, listed in enumerate(drawn):
+        found = answers.frame(number, reading=number).draw_cycles
+        predicted = predict_cycles(configuration, listed, setup=timing).cycles
+        errors.append(abs(predicted + COMMANDS - found) / found)
+        assert abs(predicted + COMMANDS - found) <= 0.02 * found + COMMANDS
+    record_property("measured", f"{configuration.cards}: objects are predicted within "
+                                f"{max(errors):.1%}")

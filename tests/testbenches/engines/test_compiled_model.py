@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.engines import compiled_model
 from cardcage.testbenches.engines.compiled_model import compile_model
+from cardcage.testbenches.engines.model_runtime import headers, include
 from cardcage.testbenches.engines.verilator_tool import (
     ToolMissingError,
     VerilatorTool,
@@ -44,8 +46,8 @@ class Recorder(VerilatorTool):
         for unit in units:
             for part in unit:
                 if part.endswith(".cc"):  # all that a unit names is there
-                    for line in (folder / part).read_text().splitlines():
-                        assert (folder / line.split('"')[1]).exists()
+                    for name in re.findall('#include "(.*)"', (folder / part).read_text()):
+                        assert (folder / name).exists()
                     (folder / part).with_suffix(".o").touch()
             if "-o" in unit:
                 (folder / unit[unit.index("-o") + 1]).touch()
@@ -74,11 +76,13 @@ def test_pieces_that_elements_have_in_common_are_written_once(tool, tmp_path, mo
     assert cut < 0.93 * whole  # more in larger machines
 
 
-def test_the_runtime_is_compiled_once(tool, tmp_path):
+def test_what_models_have_in_common_is_compiled_once(tool, tmp_path):
     for number in range(2):
         build(tool, tmp_path / str(number), "PM")
-    runtime = [unit for unit in tool.compiled if any("verilated.cpp" in part for part in unit)]
-    assert len(runtime) == 1
+    for common, wanted in (("verilated.cpp", 1), ("verilated.h", len(headers(tool)) > len(
+            include(tool)))):  # headers where the compiler can keep them
+        assert len([unit for unit in tool.compiled
+                    if any(part.endswith(f"/{common}") for part in unit)]) == wanted, common
     links = [unit for unit in tool.compiled if "../machine" in unit]
     assert len(links) == 2
     assert links[0] == links[1]

@@ -1,0 +1,108 @@
+"""Objects on the command line: what is asked, planned, drawn, reported, and refused."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from click.testing import CliRunner
+from refusals import refusal
+
+from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.errors import InputError
+from cardcage.testbenches.command_line.cli import main
+from cardcage.testbenches.command_line.tables.render_summary import render_summary
+from cardcage.testbenches.comparison.cage import Cage
+from cardcage.testbenches.frames.object_figures import object_figures
+from cardcage.testbenches.machine_options import MachineOptions, machine_without_scene, option_words
+from cardcage.testbenches.render import render
+
+SCENE = ("obj cube scale 0.5 rot 20,30,0 num 3 seed 2 color random\n"
+         "obj cone scale 3 position 2,1,0 recursion 0\n")
+NODES = ["--objects", "nodes", "--cards", "2x(PMC)"]
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch):
+    """A folder to work in, with a scene."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "some.scene").write_text(SCENE)
+    (tmp_path / "far.scene").write_text(f"projection perspective\n{SCENE}")
+
+
+def run(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["teapot", *NODES], "objects: nodes make triangles of orthographic scenes only"),
+    (["far.scene", *NODES], "objects: nodes make triangles of orthographic scenes only"),
+    (["some.scene", *NODES, "--setup", "host"], "setup: the host prepares no triangle of an obj"),
+    (["some.scene", *NODES, "--retain"], "list_words: a machine that makes triangles of objects"),
+    (["some.scene", "--objects", "nodes"], "objects: PMMPMM has no nodes that keep meshes"),
+    (["some.scene", "--objects", "nodes", "--cards", "PPDMM"], "objects: PPDMM has no nodes"),
+    (["some.scene", "--objects", "controller", "--cards", "2x(PMC)"], "has nodes, which make"),
+    (["some.scene", "--objects", "elements"], "objects: processing elements pass objects on to"),
+    (["some.scene", "--objects", "host"], "'host' is not one of 'controller', 'nodes', 'elements'"),
+    (["some.scene", "--meshes", 3], "meshes: is for machines that make triangles of objects"),
+    (["some.scene", *NODES, "--meshes", 5000], "5000 is not in the range 1<=x<=4096"),
+])
+def test_what_is_refused(words, said):
+    assert said in refusal(run, "plan", *words)
+
+
+def test_what_is_planned():
+    listed = make_display_list("some.scene", width=64, height=64).display_list
+    planned = json.loads(run("plan", "some.scene", *NODES, "--json").stdout)
+    machine = planned["machine"]
+    assert (machine["objects"], machine["meshes"]) == ("nodes", 2)
+    assert machine["mesh_triangles"] == sum(mesh.triangles for mesh in listed.objects.meshes)
+    assert (machine["setup"], machine["setup_interval"]) == ("hardware", 1)
+    text = run("plan", "some.scene", *NODES, "--mesh-triangles", 99, "--setup", "small").stdout
+    assert "4 objects are 2 meshes, moved" in text and "in each of 2 nodes" in text
+    [line] = [line for line in text.splitlines() if line.startswith("mesh triangles")]
+    assert line.split()[2] == "99"
+    assert "--objects nodes" in text.splitlines()[-1]
+
+
+def test_without_a_scene():
+    options = MachineOptions(cards="2x(PMC)", objects="nodes", mesh_triangles=40, meshes=3)
+    machine = machine_without_scene(options)
+    assert (machine.objects, machine.mesh_triangles, machine.meshes) == ("nodes", 40, 3)
+    assert option_words(options)[-6:] == ["--objects", "nodes", "--mesh-triangles", "40",
+                                          "--meshes", "3"]
+    with pytest.raises(InputError, match=r"^--objects: without a scene .*--mesh-triangles and"):
+        machine_without_scene(replace(options, meshes=None))
+
+
+def test_what_is_drawn_and_reported(tmp_path):
+    rendering = render("some.scene", out=tmp_path / "out", cards="2x(PMC)", size=(8, 6),
+                       packet=1, objects="nodes")
+    assert rendering.comparison.equal and not rendering.warnings
+    found = json.loads((tmp_path / "out" / "report.json").read_text())["objects"]
+    assert found["equal"] and found["read"] and found["clipped"] == 1
+    assert [place["made"] for place in found["per_place"]] == [
+        place["golden_made"] for place in found["per_place"]]
+    assert found["link_words"] == found["golden_link_words"]
+    assert "Made in node 1" in (tmp_path / "out" / "report.html").read_text()
+    line = next(line for line in render_summary(rendering).splitlines() if "objects " in line)
+    assert "4 of 2 meshes, 36 triangles made in 2 nodes, 1 objects sent as triangles" in line
+    # Counts that are not golden's are told.
+    wrong = replace(rendering.simulation, made=[24, 13], dropped=[9])
+    figures = object_figures(rendering.configuration, rendering.scene.display_list, wrong)
+    figures = replace(figures, words=replace(figures.words, frame=1))
+    made = [each.made for each in figures.golden]
+    assert figures.differences[0] == f"place 1 made 13 triangles, golden {made[1]}"
+    assert "1 places say what they dropped, golden 2" in figures.differences
+    assert "the frame took 1 words on the host link" in figures.differences[-1]
+
+
+@pytest.mark.parametrize(("cage", "objects", "made"), [
+    ("2x(PMC)", "nodes", "nodes"), ("2x(PM)", "nodes", None), ("2xPD2xM", "nodes", None),
+    ("2x(PM)", "controller", "controller"), ("2x(PMC)", "controller", None),
+    ("2x(PM)/4x4", "elements", "elements"), ("2x(PM)", "elements", None)])
+def test_which_cages_of_a_comparison_make_triangles(cage, objects, made):
+    """Others are sent triangles, and set them up by the same means."""
+    options = Cage.named(cage).options(MachineOptions(objects=objects, meshes=4))
+    assert (options.objects, options.setup) == (made, "fast")
+    assert options.meshes == (4 if made else None)
+    assert Cage.named(cage, retained=True).options(MachineOptions(objects=objects)).objects is None
