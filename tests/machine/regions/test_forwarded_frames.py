@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, compiled, run
-from region_bench.forwarded_scenes import MODELS, machine, scenes
+from region_bench.forwarded_scenes import machine, scenes
 
+from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.forwarding import forwarded_objects, made_at_elements
 from cardcage.golden.objects.object_words import frame_words, mesh_words
 from cardcage.golden.reference.exact import depth_complexity
@@ -13,6 +14,13 @@ from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.testbenches.frames.compare import compare
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.frames.setup_timing import setup_timing
+
+#: Of ``MODELS``: all of them take minutes to compile.
+SUITE = ("three strips, one port", "four of a grid")
+
+#: Of the clocks to draw.
+ACCURACY = 0.01
 
 CLEAR, END = (commands.command(opcode) for opcode in (Opcode.CLEAR_LISTS, Opcode.FRAME_END))
 
@@ -23,10 +31,11 @@ def frame(configuration, listed):
             READ_DEPTH, READ_COUNTERS]
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", SUITE)
 def test_frames_of_objects(name):
     """From random memory; with and without stalls; each kind of scene after each other one, and at
-    the end one of triangles that the host has prepared."""
+    the end one of triangles that the host has prepared.  Without stalls the cycle model foretells
+    the clocks."""
     configuration = machine(name)
     drawn = scenes(configuration)
     lists = [*[*drawn.values(), *drawn.values()][::2], drawn["anywhere"]]
@@ -52,6 +61,10 @@ def test_frames_of_objects(name):
             assert list(simulation.dropped) == [each.dropped for each in made]
             assert list(simulation.forwarded) == list(zip(
                 golden.left.tolist(), golden.right.tolist(), strict=True))
+            if stalls is None and listed.triangles:
+                clocks = predict_cycles(configuration, listed, setup=setup_timing(configuration))
+                assert abs(clocks.cycles / simulation.draw_cycles - 1) < ACCURACY
+                assert clocks.bound <= 1.001 * simulation.draw_cycles
 
 
 def test_scenes_are_what_they_say():
@@ -68,7 +81,7 @@ def test_scenes_are_what_they_say():
 
 
 def test_objects_that_are_refused():
-    configuration = machine("two strips")
+    configuration = machine("three strips, one port")
     some = scenes(configuration)["anywhere"]
     begin, load, unknown = (commands.command(*word) for word in (
         (Opcode.MESH,), (Opcode.MESH_TRIANGLE,), (Opcode.OBJECT, configuration.meshes)))
