@@ -16,7 +16,6 @@ from .....golden.specification.configuration import MachineConfiguration
 from ....frames.setup_timing import setup_timing
 from ..scenes.screen_parts import Parts, screen_grid_of
 from ..scenes.spheres import Size
-from .forwarded_clocks import forwarded_clocks
 from .our_scene import TRIANGLES, our_objects
 
 Int64 = NDArray[np.int64]
@@ -96,8 +95,7 @@ def drawing_clocks(decomposition: Decomposition, size: Size, seed: int, nodes: i
     asked = {count for count in spheres if count <= FOLLOWED}
     if spheres[-1] > FOLLOWED:
         asked |= {FOLLOWED // 2, FOLLOWED}
-    clocks = (_each if decomposition.kind == "host" else
-              _forwarded if machine.forwards_objects else _nested)
+    clocks = _each if decomposition.kind == "host" else _nested
     found = dict(zip(sorted(asked), clocks(machine, size, seed, sorted(asked)), strict=True))
     return [found[count] if count in found else _beyond(found, count) for count in spheres]
 
@@ -117,21 +115,12 @@ def _each(machine: MachineConfiguration, size: Size, seed: int,
 
 def _nested(machine: MachineConfiguration, size: Size, seed: int,
             spheres: Sequence[int]) -> list[float]:
-    """Fewer spheres are the first of more, sent in the same order."""
+    """Fewer spheres are the first of more, sent in the same order.  What is finished is told of
+    each triangle, or of each object."""
     listed = our_objects(size, seed, spheres[-1]).display_list()
     finished = predict_cycles(machine, listed, setup=setup_timing(machine)).finished
     sent = len(finished) * np.array(spheres) // spheres[-1]  # all spheres have as many that are
     return [float(clocks) for clocks in finished[sent - 1]]
-
-
-def _forwarded(machine: MachineConfiguration, size: Size, seed: int,
-               spheres: Sequence[int]) -> list[float]:
-    """Likewise."""
-    timing = setup_timing(machine)
-    assert timing is not None
-    finished = forwarded_clocks(
-        machine, our_objects(size, seed, spheres[-1]).display_list(), timing)
-    return [finished[count - 1] for count in spheres]
 
 
 def words_on_link(decomposition: Decomposition, size: Size, seed: int, nodes: int,
