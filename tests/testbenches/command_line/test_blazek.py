@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 from refusals import refusal
 
+from cardcage.golden.cycles.broadcast import SetupTiming
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.figures.blazek.blazek import BlazekOptions
 from cardcage.testbenches.figures.blazek.facts import PAPER
@@ -41,6 +42,9 @@ def place(tmp_path, monkeypatch):
     monkeypatch.setattr(times, "METHODS", methods)
     monkeypatch.setattr(sensitivity, "METHODS", methods)
     monkeypatch.setattr(decompositions, "FOLLOWED", 2)
+    # As that of all these machines is; to ask each takes half a second.
+    monkeypatch.setattr(decompositions, "setup_timing", lambda machine: SetupTiming(
+        interval=3, latency=131, inside=45))
     monkeypatch.setattr(clocks, "merging_clocks", lambda *asked: [1000] * len(SPHERES))
     monkeypatch.setattr(in_rtl, "POINTS", ("broadcast, lines",))
     monkeypatch.setattr(in_rtl, "simulate_frame", lambda machine, listed, engine: SimpleNamespace(
