@@ -69,7 +69,7 @@ def sensitivity_table(found: Sensitivity) -> TextTable:
 def link_table(clocks: Mapping[str, Clocks]) -> TextTable:
     return TextTable(
         f"ours: words of 32 bits on the host link for a frame on {MOST} nodes, the mesh loaded "
-        "anew", ("decomposition", *(f"{spheres:,} spheres" for spheres in SHOWN_SPHERES)),
+        "anew, by spheres", ("decomposition", *(f"{spheres:,}" for spheres in SHOWN_SPHERES)),
         tuple((name, *(f"{found.words(spheres, MOST):,}" for spheres in SHOWN_SPHERES))
               for name, found in clocks.items()))
 

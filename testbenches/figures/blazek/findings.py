@@ -35,7 +35,7 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
         for method in (LINES, BROADCAST_STRIPS) for place, speed in enumerate(found[method]))
     free = by_axis[TESSELLATING]
     scene = Scene.of(size, 0, 1)
-    drawing = float(scene.polygon_drawing.sum())
+    drawn, sending = float(scene.polygon_drawing.mean()), COSTS.byte * COSTS.polygon_bytes
     meetings = scene.work(MOST, "lines").polygons.sum() / scene.template.polygons
     share = (1 / NEARLY - 1) / (MOST - 1 / NEARLY)
     lines = [
@@ -43,12 +43,12 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
         f"{speed:.1f} on {MOST} nodes at best: {method}, {axis} {axis_of(axis).values[place]:g} "
         f"{axis_of(axis).unit}, where node initiated has {by_axis[axis][NODE][place]:.1f} "
         f"({SPHERES} spheres).",
-        f"If drawing were shared out evenly and nothing else cost anything, a broadcast on {MOST} "
-        f"nodes that is {NEARLY:g} of perfect would need tessellating to take {100 * share:.1f} % "
-        f"of drawing: {share * drawing / scene.template.polygons / MICROSECOND:.1f} µs a polygon, "
-        "where sending a polygon, which takes less, is "
-        f"{COSTS.byte * COSTS.polygon_bytes / MICROSECOND:.0f} µs.  So chapter V's remark on "
-        "forwarded polygons and chapter VI's on broadcast cannot both hold of one renderer.",
+        f"Were drawing shared out evenly and nothing else to cost anything, a broadcast on {MOST} "
+        f"nodes that is {NEARLY:g} of perfect needs tessellating to take {100 * share:.1f} % of "
+        f"drawing: {share * drawn / MICROSECOND:.1f} µs a polygon.  By chapter V it takes longer "
+        f"than to send one, {sending / MICROSECOND:.0f} µs.  Both hold only where drawing a "
+        f"polygon takes {1000 * sending / share:.0f} ms or more: of "
+        f"{scene.template.whole.pixels.sum() / scene.template.polygons:.1f} pixels here.",
         f"Even where tessellating is all but free ({axis_of(TESSELLATING).values[0]:g} µs) "
         f"interlaced lines come to a speed-up of {free[LINES][0]:.1f} on {MOST} nodes: a polygon "
         f"is set up by each node that has a line of it, {meetings:.1f} on average.  Strips come to "
