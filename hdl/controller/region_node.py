@@ -26,8 +26,8 @@ class RegionNode(OneNode):
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self.table = RegionTable(configuration=configuration)
-        self._objects = (ObjectCommands(configuration=configuration)
-                         if configuration.forwards_objects else None)
+        self._forwarded = (ObjectCommands(configuration=configuration)
+                           if configuration.forwards_objects else None)
         #: Processing elements in the cage.
         self._elements = Signal(configuration.element_bits, name="elements")
         #: The first table is being dealt.
@@ -40,7 +40,7 @@ class RegionNode(OneNode):
     @property
     def members(self) -> dict[str, wiring.Member]:
         return {"regions": Out(RegionLines(self.configuration)), "shown_table": Out(1),
-                **({} if self._objects is None else {"lists_full": In(1)})}
+                **({} if self._forwarded is None else {"lists_full": In(1)})}
 
     def add_to(self, m, controller):
         m.submodules.region_table = table = self.table
@@ -143,13 +143,13 @@ class RegionNode(OneNode):
             with m.Case(Opcode.READ_REGIONS):
                 controller.announce(m, Operation.READ_REGIONS, "ANSWERING", when=controller.quiet)
                 m.d.comb += controller.commands.ready.eq(controller.broadcast.strobe)
-        if self._objects is not None:
-            self._objects.commands(m, controller)
+        if self._forwarded is not None:
+            self._forwarded.commands(m, controller)
 
     def states(self, m, controller):
         with m.State("REFUSE_REGION"):
             controller.respond(m, ResponseKind.ERROR, self._fault, "COMMAND")
         with m.State("REFUSE_TABLE"):
             controller.respond(m, ResponseKind.ERROR, Fault.REGION_TO_NOBODY, "START_FRAME")
-        if self._objects is not None:
-            self._objects.states(m, controller)
+        if self._forwarded is not None:
+            self._forwarded.states(m, controller)
