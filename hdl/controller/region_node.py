@@ -134,7 +134,7 @@ class RegionNode(OneNode):
         m.d.comb += self.table.swap.eq(1)
 
     def commands(self, m, controller):
-        if self.configuration.balancer == "host" and not self.configuration.forwards_objects:
+        if self.configuration.takes_tables:
             with m.Case(Opcode.REGION):
                 m.d.comb += [self.table.offer.eq(1), controller.commands.ready.eq(1)]
                 with m.If(self.table.fault != 0):

@@ -111,8 +111,7 @@ def _silent(organisation: Organisation) -> list[Opcode]:
         silent += [Opcode.LOAD, Opcode.DRAW_LISTS, Opcode.CLEAR_LISTS]
     if configuration.objects is not None:  # of meshes that were loaded
         silent += [Opcode.CLEAR_LISTS, Opcode.MESH, Opcode.MESH_TRIANGLE, Opcode.OBJECT]
-    if (configuration.regions is not None and configuration.balancer == "host"
-            and not configuration.forwards_objects):
+    if configuration.takes_tables:
         silent.append(Opcode.REGION)  # of a table as it should be
     return silent
 

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 from ..card_order import NODE_ENDS
 from ..errors import InputError
 from ..ranges import MAXIMUM_WORDS, check_whole
-from ..regions import Balance
+from ..regions import Balance, Balancer
 from ..widths import Widths
 
 #: Where meshes are kept and the triangles of objects are made (Blazek 1991, chapter V): in each
@@ -28,6 +28,7 @@ class MakingFields(Widths):
     setup: Literal["host", "hardware"]
     list_words: int
     balance: Balance
+    balancer: Balancer
     objects: Objects | None
     mesh_triangles: int
     meshes: int
@@ -52,6 +53,12 @@ class MakingFields(Widths):
     def forwards_objects(self) -> bool:
         """Processing elements pass objects on to their neighbours."""
         return self.objects == "elements"
+
+    @property
+    def takes_tables(self) -> bool:
+        """The host says which regions of the screen are whose."""
+        return (self.regions is not None and self.balancer == "host"
+                and not self.forwards_objects)
 
     @property
     def keeps_list_order(self) -> bool:
