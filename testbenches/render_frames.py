@@ -104,16 +104,17 @@ class FramesJob:
             memory_seed=self.options.random_memory))
         shown = next((frame for frame in frames if not frame.equal), frames[-1])
         scene = self.lists.scene(shown.number)
+        objects = object_figures(self.configuration, scene.display_list, shown.simulation)
         return FramesRendering(frames, Rendering(
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,
             warnings=(*self.warnings, *shown.simulation.notes, *(
                 f"picture {frame.number}: {line}" for frame in frames
-                if frame.regions is not None for line in frame.regions.differences)),
+                if frame.regions is not None for line in frame.regions.differences),
+                *([] if objects is None else objects.differences)),
             wall_seconds=time.perf_counter() - self.began, report=report,
             traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation),
-            regions=shown.regions, objects=object_figures(
-                self.configuration, scene.display_list, shown.simulation)), report)
+            regions=shown.regions, objects=objects), report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

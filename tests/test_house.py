@@ -25,8 +25,8 @@ WINGS = {
         "forwarding", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
-        "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",
-        "cocotb_bench", "command_line", "studies"),
+        "render", "render_frames", "comparison", "speed", "fpga", "precision", "atlas",
+        "figures", "cocotb_bench", "command_line", "studies"),
     "package": ("__main__",),
 }
 ORDER = list(WINGS)

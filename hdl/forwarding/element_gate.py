@@ -51,10 +51,8 @@ class ElementGate(wiring.Component):
         The neighbours' objects.
     full: Out(1)
         A mesh found no room since all were cleared.
-    start: In(1)
-        Count anew; only while all is done.
     made, dropped, forwarded: Out(RESPONSE_VALUE_BITS)
-        The values of ``MADE``, ``DROPPED`` and ``FORWARDED``.
+        The values of ``MADE``, ``DROPPED`` and ``FORWARDED``, since the frame's start.
 
     Blazek 1991, chapter V, node initiated with object forwarding.
     """
@@ -75,7 +73,6 @@ class ElementGate(wiring.Component):
             "from_left": In(passed), "from_right": In(passed),
             "to_left": Out(passed), "to_right": Out(passed),
             "full": Out(1),
-            "start": In(1),
             **dict.fromkeys(("made", "dropped", "forwarded"), Out(RESPONSE_VALUE_BITS)),
         })
 
@@ -95,13 +92,21 @@ class ElementGate(wiring.Component):
         m.submodules.forwarder = forwarder = self._forwarder
         m.submodules.setup = setup = self._setup
         wiring.connect(m, wiring.flipped(self.regions), forwarder.regions)
-        m.d.comb += [forwarder.element.eq(self.element), setup.total.eq(self.total),
-                     self.full.eq(setup.full), setup.start.eq(self.start)]
+        start = Signal(name="frame_starts")
+        m.d.comb += [
+            forwarder.element.eq(self.element),
+            setup.total.eq(self.total),
+            self.full.eq(setup.full),
+            # Nothing is held anywhere then.
+            start.eq(self.broadcast.strobe
+                     & (self.broadcast.packet.operation == Operation.FRAME_START)),
+            setup.start.eq(start),
+        ]
         wiring.connect(m, reach.reaching, forwarder.host)
         for name in ("from_left", "from_right", "to_left", "to_right"):
             wiring.connect(m, wiring.flipped(getattr(self, name)), getattr(forwarder, name))
         self._listen(m, reach, forwarder, setup)
-        self._count(m, forwarder, setup)
+        self._count(m, forwarder, setup, start)
         return m
 
     def _listen(self, m, reach, forwarder, setup):
@@ -153,13 +158,13 @@ class ElementGate(wiring.Component):
             m.d.comb += [own.packet.operation.eq(Operation.DRAW),
                          own.packet.body.draw.eq(triangle.payload)]
 
-    def _count(self, m, forwarder, setup):
+    def _count(self, m, forwarder, setup, start):
         """Objects that are passed on, either way, and triangles as set-up counts them."""
         layout = RESPONSE_FIELDS[ResponseKind.FORWARDED]
         counts = {}
         for way in layout:
             out = getattr(forwarder, f"to_{way}")
             counts[way] = count = Signal(layout[way], name=f"forwarded_{way}")
-            m.d.sync += count.eq(Mux(self.start, 0, count + (out.valid & out.ready)))
+            m.d.sync += count.eq(Mux(start, 0, count + (out.valid & out.ready)))
         m.d.comb += [self.made.eq(setup.made), self.dropped.eq(setup.dropped),
                      self.forwarded.eq(response_value(ResponseKind.FORWARDED, **counts))]

@@ -75,7 +75,6 @@ class ForwardingElement(ProcessingElement):
         part.d.comb += [
             gate.total.eq(self.total),
             gate.element.eq(self.left.id >> self.configuration.share_bits),
-            gate.start.eq(control.frame_start),
             self.lists_full.eq(gate.full),
             *(getattr(control, name).eq(getattr(gate, name))
               for name in ("made", "dropped", "forwarded")),

@@ -14,6 +14,7 @@ from ...golden.specification.commands import (
     opcode_of,
     response_value,
 )
+from .heard_meshes import HeardMeshes
 from .heard_tables import HeardTables
 
 
@@ -87,13 +88,16 @@ def owed_to(organisation: Organisation, word: int) -> list[Owed]:
 
 def owed_to_each(organisation: Organisation, words: Iterable[int]) -> Iterator[list[Owed]]:
     """What answers each of these commands, the first of which comes right after the boot; also
-    where tables of regions are not as they should be."""
-    tables = None
-    if Opcode.REGION in _silent(organisation) and organisation.fault is None:
-        tables = HeardTables(organisation.configuration)
+    where tables of regions, or meshes and objects, are not as they should be."""
+    heard: list[HeardTables | HeardMeshes] = []
+    if organisation.fault is None:
+        if Opcode.REGION in _silent(organisation):
+            heard.append(HeardTables(organisation.configuration))
+        if organisation.configuration.objects is not None:
+            heard.append(HeardMeshes(organisation.configuration))
     for word in words:
-        fault = None if tables is None else tables.take(word)
-        refused = [] if fault is None else [Owed(ResponseKind.ERROR, fault)]
+        faults = [each.take(word) for each in heard]
+        refused = [Owed(ResponseKind.ERROR, fault) for fault in faults if fault is not None]
         yield refused + owed_to(organisation, word)
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...golden.objects.forwarding import forwarded_objects
-from ...golden.objects.making import LinkWords, Made, golden_made, link_words, triangle_link_words
+from ...golden.objects.made import Made
+from ...golden.objects.making import LinkWords, golden_made, link_words, triangle_link_words
 from ...golden.objects.object_words import made_of_objects
 from ...golden.specification.commands import Opcode, command_words, opcode_of
 from ...golden.specification.configuration import MachineConfiguration

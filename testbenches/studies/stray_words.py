@@ -63,7 +63,10 @@ class StrayWords:
 
     def _random_body(self) -> list[int]:
         """A drawing command mostly: those that are answered take long."""
-        opcode = self._source.choice([*Opcode, *[Opcode.PREPARED_TRIANGLE, Opcode.TRIANGLE] * 4])
+        drawing = [Opcode.PREPARED_TRIANGLE, Opcode.TRIANGLE]
+        if self._configuration.objects is not None:
+            drawing += [Opcode.OBJECT] * 2
+        opcode = self._source.choice([*Opcode, *drawing * 4])
         body = self._bits(commands.command_bits(self._configuration) - commands.BODY_OFFSET)
         return [commands.command(opcode, body)]
 
@@ -97,12 +100,14 @@ class StrayWords:
 
     def _altered(self, word: int, every: bool) -> int:
         opcode = commands.opcode_of(word)
-        if opcode == Opcode.PREPARED_TRIANGLE:
-            layout = commands.prepared_triangle_layout(self._configuration)
-        elif opcode == Opcode.TRIANGLE:
-            layout = commands.triangle_layout(self._configuration)
-        else:
+        layouts = {Opcode.PREPARED_TRIANGLE: commands.prepared_triangle_layout,
+                   Opcode.TRIANGLE: commands.triangle_layout}
+        if self._configuration.objects is not None:
+            layouts |= {Opcode.MESH_TRIANGLE: commands.mesh_triangle_layout,
+                        Opcode.OBJECT: commands.object_layout}
+        if opcode not in layouts:
             return word
+        layout = layouts[Opcode(opcode)](self._configuration)
         fields = list(_fields(layout, commands.BODY_OFFSET))
         # Of a triangle set up by the host the first five are its rows and columns.
         few = self._source.choice((fields, fields[:5]))

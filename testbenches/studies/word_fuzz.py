@@ -42,6 +42,9 @@ MACHINES: dict[str, dict[str, Any]] = {
     "regions": {"cards": "3x(PM)", "width": 8, "height": 8, "regions": (4, 4)},
     "regions, hardware": {"cards": "2x(PMM)", "width": 9, "height": 7, "regions": (3, 2),
                           "balancer": "hardware", "shading": "flat"},
+    "objects": {"cards": "2x(PMC)", "setup": "hardware", "setup_interval": 8, "objects": "nodes"},
+    "objects passed on": {"cards": "3x(PM)", "setup": "hardware", "setup_interval": 8,
+                          "objects": "elements", "regions": (2, 4), "balance": "static"},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
     "larger": {"cards": "PMMPMM", "width": 48, "height": 40},
@@ -49,13 +52,16 @@ MACHINES: dict[str, dict[str, Any]] = {
 }
 
 #: Those that are worth compiling; pysim is quicker for the others, model and all.
-LARGER = ("larger", "larger set-up")
+LARGER = ("larger", "larger set-up", "objects", "objects passed on")
 
 
 @cache
 def machine(name: str) -> tuple[MachineConfiguration, tuple[DisplayList, ...]]:
     """A machine of ``MACHINES`` and the good frames it draws."""
     fields: dict[str, Any] = {"clocks_per_pixel": 2, **MACHINES[name]}
+    if "objects" in fields:
+        only = make_display_list("three_cubes", width=8, height=8).display_list
+        return plan(only, packet=1, **fields).configuration, (only,)
     if "width" not in fields:
         only = make_display_list("tetra:depth=1", width=8, height=8).display_list
         planned = plan(only, **fields).configuration

@@ -119,6 +119,7 @@ def frames_summary(rendering: FramesRendering) -> str:
         _line("machine", f"{shown.configuration.cards}, {_precision(shown)}"),
         *([] if shown.regions is None else [_line("regions", _regions(
             [frame.regions for frame in frames if frame.regions is not None]))]),
+        *([] if shown.objects is None else [_line("objects", _objects(shown.objects))]),
         _line("cycles", f"{min(draw):,} to {max(draw):,} to draw a picture; {simulation.cycles:,} "
               f"simulated by {simulation.engine} in {simulation.seconds:.1f} s"
               + (f", after {simulation.build_seconds:.0f} s of compiling the model"

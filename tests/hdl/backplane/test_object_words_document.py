@@ -29,6 +29,10 @@ TO_ELEMENTS = MachineConfiguration(
     mesh_triangles=8, meshes=6, regions=(4, 2), balance="static")
 
 
+AT_CONTROLLER = MachineConfiguration(**PRESETS["tiny"] | {"cards": "2x(PM)"}, setup="hardware",
+                                     objects="controller", mesh_triangles=8, meshes=6)
+
+
 @pytest.mark.parametrize(("name", "layout"), [
     ("MESH", commands.mesh_layout), ("OBJECT", commands.object_layout)])
 def test_offsets_of_objects(name, layout):
@@ -52,7 +56,8 @@ def test_a_triangle_of_a_mesh_has_the_fields_of_a_triangle():
 
 
 @pytest.mark.parametrize(("column", "configuration"), [
-    ("2x(PMC), nodes", OF_OBJECTS), ("2x(PM), elements", TO_ELEMENTS)])
+    ("2x(PMC), nodes", OF_OBJECTS), ("2x(PM), elements", TO_ELEMENTS),
+    ("2x(PM), controller", AT_CONTROLLER)])
 def test_what_a_cage_that_makes_triangles_answers(column, configuration):
     header = "command to a cage that makes triangles"
     for row in table(header):

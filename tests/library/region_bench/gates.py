@@ -29,7 +29,6 @@ class GateRow(wiring.Component):
             "regions": In(RegionLines(configuration)),
             "broadcast": In(BroadcastLines(configuration)),
             "own": Out(BroadcastLines(configuration)).array(len(self.gates)),
-            "start": In(1),
         })
 
     def elaborate(self, platform):
@@ -41,8 +40,7 @@ class GateRow(wiring.Component):
         for number, gate in enumerate(self.gates):
             m.submodules[f"gate_{number}"] = gate
             wiring.connect(m, gate.own, wiring.flipped(self.own[number]))
-            m.d.comb += [gate.total.eq(self.configuration.units), gate.element.eq(number),
-                         gate.start.eq(self.start)]
+            m.d.comb += [gate.total.eq(self.configuration.units), gate.element.eq(number)]
         connect_forwarding(m, self.gates)
         return m
 
@@ -91,7 +89,6 @@ class GateController(Agent):
     def drive(self, ctx):
         lines = self._row.broadcast
         ctx.set(lines.strobe, 0)
-        ctx.set(self._row.start, 0)
         ctx.set(Value.cast(lines.packet), 0)
         if self._settle or self._wait or not self._words:
             self._wait = max(0, self._wait - 1)
@@ -101,8 +98,6 @@ class GateController(Agent):
             if ctx.get(lines.done):
                 self._words.pop(0)
                 self._words.pop(0)(ctx)
-                ctx.set(self._row.start, 1)
-                self._wait = 1
             return
         if isinstance(word, Operation):
             ctx.set(lines.packet.operation, word)
