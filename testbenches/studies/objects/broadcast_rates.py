@@ -50,7 +50,8 @@ def main(count: int, recursion: int, radius: float, size: int, elements: tuple[i
          fifo: int, setup: SetupChoice) -> None:
     """Host broadcast of objects to 1, 2, 4 … processing elements."""
     listed = spheres(count, recursion, radius, size)
-    rows, alone = [], {}
+    rows: list[tuple[str, ...]] = []
+    alone: dict[str, float] = {}
     for number in elements:
         for way, fields in ways(number, size).items():
             machine = plan(listed, cards=f"{number}x(PMM)", memory_ports=2, clocks_per_pixel=2,
