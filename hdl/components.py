@@ -16,7 +16,11 @@ from ..golden.specification.card_order import (
     SNOOP_MERGE,
 )
 from ..golden.specification.commands import RESPONSE_VALUE_BITS
-from ..golden.specification.configuration import SNOOP_TAG_BITS, MachineConfiguration
+from ..golden.specification.configuration import (
+    MAXIMUM_SETUP_INTERVAL,
+    SNOOP_TAG_BITS,
+    MachineConfiguration,
+)
 from ..golden.specification.fields.making import NO_OBJECTS
 from ..golden.specification.queues import FRAGMENTS_OF_ELEMENT, depth_lanes
 from .arithmetic.divider import Divider
@@ -41,6 +45,11 @@ from .direct.fragment_queue import FragmentQueue
 from .direct.round_robin import RoundRobin
 from .direct.unit_counters import UnitCounters
 from .direct.unit_feed import UnitFeed
+from .forwarding.element_gate import ElementGate
+from .forwarding.forwarding_element import ForwardingElement
+from .forwarding.object_forwarder import ObjectForwarder
+from .forwarding.object_reach import ObjectReach
+from .forwarding.reach import object_bits
 from .machine import BOARDS, boards_of
 from .mapping.interlace import PixelAddress, ScanAddress
 from .mapping.lattice import LatticeBlock
@@ -138,8 +147,11 @@ def _with_regions(configuration: MachineConfiguration) -> MachineConfiguration:
     """The configuration with regions, and what they cost counted; where it has none with two
     elements, of two units each, and up to four columns and rows of them."""
     if configuration.regions is not None:
-        return (replace(configuration, balance="clocks", balancer="host", words=0)
-                if configuration.balance == "static" else configuration)
+        if configuration.balance != "static":
+            return configuration
+        # Where elements pass objects on they have no counts.
+        plain = dict(order_bits=0, **NO_OBJECTS) if configuration.forwards_objects else {}
+        return replace(configuration, balance="clocks", balancer="host", words=0, **plain)
     sizes = configuration.width, configuration.height
     columns, rows = (-(-size >> max(1, (size - 1).bit_length() - 2)) for size in sizes)
     # A picture of one row or column is too narrow to spread over units.
@@ -173,6 +185,19 @@ def _with_objects(configuration: MachineConfiguration) -> MachineConfiguration:
              else _merged_by(CHAIN_MERGE, configuration))
     return replace(nodes, setup="hardware", list_words=0, objects="nodes", mesh_triangles=256,
                    meshes=16)
+
+
+def _forwarding(make: Callable[..., wiring.Component],
+                configuration: MachineConfiguration) -> wiring.Component:
+    """What only machines have whose processing elements pass objects on."""
+    if configuration.forwards_objects:
+        return make(configuration=configuration)
+    plain = (replace(configuration, objects=None, meshes=0, mesh_triangles=0)
+             if configuration.objects is not None else configuration)
+    return make(configuration=replace(
+        _with_regions(plain), balance="static", balancer="host", setup="hardware",
+        setup_interval=MAXIMUM_SETUP_INTERVAL, order_bits=6, objects="elements",
+        mesh_triangles=256, meshes=16, words=0))
 
 
 def _packing(configuration: MachineConfiguration) -> dict[str, int]:
@@ -209,6 +234,8 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
     "drawn_map": lambda c: DrawnMap(words=c.words),
     "edge_columns": lambda c: EdgeColumns(configuration=c),
     "edge_setup": lambda c: EdgeSetup(configuration=c),
+    "element_gate": partial(_forwarding, ElementGate),
+    "forwarding_element": partial(_forwarding, ForwardingElement),
     "fragment_queue": partial(_direct, lambda c: FragmentQueue(
         depth=_depth_of_queues(c), shape=_fragment(c))),
     "fragment_stepper": lambda c: FragmentStepper(configuration=c),
@@ -225,6 +252,9 @@ COMPONENTS: dict[str, Callable[[MachineConfiguration], wiring.Component]] = {
         label=region_shape(**_regions(configuration)))),
     "mesh_memory": partial(_of_objects, MeshMemory),
     "nearest_word": lambda c: NearestWord(depth_bits=c.depth_bits, order_bits=c.order_bits),
+    "object_forwarder": partial(_forwarding, lambda configuration: ObjectForwarder(
+        configuration=configuration, object_bits=object_bits(configuration))),
+    "object_reach": partial(_forwarding, ObjectReach),
     "object_reader": partial(_of_objects, ObjectReader),
     "object_setup": partial(_of_objects, ObjectSetup),
     "one_port_depth_test": lambda c: OnePortDepthTest(**memory_bus_bits(c),

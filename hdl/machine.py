@@ -18,6 +18,7 @@ from .controller.central_broadcast_controller import CentralBroadcastController
 from .direct.direct_element import DirectElement
 from .direct.direct_lines import connect_direct
 from .direct.direct_merge import DirectMerge
+from .forwarding.forwarding_element import ForwardingElement, connect_forwarding
 from .lines_to_all import connect_broadcast, connect_pictures, connect_regions, connect_scan
 from .memory_unit.memory_unit import MemoryUnit
 from .nodes.chain_merge import ChainMerge
@@ -54,6 +55,8 @@ def boards_of(configuration: MachineConfiguration) -> dict[str, type[wiring.Comp
     boards = {name: board for name, board in BOARDS.items() if name not in others}
     if configuration.merges_directly:
         boards["processing_element"] = DirectElement
+    if configuration.forwards_objects:
+        boards["processing_element"] = ForwardingElement
     return boards
 
 
@@ -139,8 +142,8 @@ class Machine(wiring.Component):
     def storages(self):
         """Every RAM whose contents outlast a frame: of memory and frame units, of lists and
         meshes."""
-        lists = (self.processing_elements if self.configuration.merges_directly
-                 else self.merge_cards)
+        in_elements = self.configuration.merges_directly or self.configuration.forwards_objects
+        lists = self.processing_elements if in_elements else self.merge_cards
         boards = [*self.memory_units, *self.frame_units, *lists, self.controller]
         return [storage for board in boards for storage in board.storages]
 
@@ -205,3 +208,7 @@ class Machine(wiring.Component):
                             [element.regions for element in self.processing_elements])
             connect_regions(regions, controller.regions, [generator.regions],
                             table=controller.shown_table)
+        if self.configuration.forwards_objects:
+            connect_forwarding(m, self.processing_elements)
+            fixed.d.comb += controller.lists_full.eq(
+                Cat(element.lists_full for element in self.processing_elements).any())

@@ -64,7 +64,8 @@ class MachineOptions:
     ``setup``             who sets triangles up: ``host``, or the controller, ``small`` with one
                           divider of each kind or ``fast`` with a stage for each bit
     ``packet``            triangles of a packet for each node, ``"contiguous"`` or ``"work"``, which
-                          cages of nodes have where nothing is said
+                          cages of nodes have where nothing is said; where the machine makes
+                          triangles of objects, objects; also for elements that pass them on
     ``queue``             fragments that can wait from each processing element to each memory unit,
                           or ``"element"``, where nodes merge directly
     ``retain``            nodes have list memories, as large as the scene needs
@@ -72,9 +73,10 @@ class MachineOptions:
     ``regions``           columns and rows of the regions of the screen that are dealt out to
                           processing elements; None interlaces pixels
     ``slots``             regions that each of them has room for
-    ``balance``           by which the next table is made: ``static`` nothing, ``triangles`` or
-                          ``clocks`` of each region in the last picture, which is what the machine
-                          counts; ``learnt``, clocks that the host foretells from the last three
+    ``balance``           by which the next table is made: ``static`` and ``runs`` nothing,
+                          ``triangles`` or ``clocks`` of each region in the last picture, which is
+                          what the machine counts; ``learnt``, clocks that the host foretells from
+                          the last three
     ``balancer``          who makes that table: ``host`` or ``hardware``
 
     ``objects``           where the machine makes the triangles of a scene's objects: ``nodes``,
@@ -140,6 +142,8 @@ class MachineOptions:
         self._check_regions()
         if self.balance is not None:
             settled["balance"] = counted_by(self.balance)
+        elif self.objects == "elements" and self.regions is not None:
+            settled["balance"] = "static"  # each element keeps its run of regions
         if self.packet is None and merge_card(parse_cards(settled["cards"])) is not None:
             settled["packet"] = DEFAULT_PACKET
         if self.objects is not None:  # nobody else can set up what the machine makes
@@ -158,7 +162,7 @@ class MachineOptions:
         if self.retain and merge is None:
             raise InputError(f"--retain: {cards} has no merge card, and so no list memory; end its "
                              "nodes with merge cards, as in 2x(PMMC)")
-        if self.packet is not None and merge is None:
+        if self.packet is not None and merge is None and self.objects != "elements":
             raise InputError(f"--packet: {cards} has no merge card, and so one node, which draws "
                              "all; leave it out, or end nodes with merge cards, as in 2x(PMMC)")
         if self.queue is not None and merge != DIRECT_MERGE:
@@ -173,6 +177,9 @@ class MachineOptions:
                                  "well, as in --regions 8x8")
         if self.balance not in (None, *get_args(Policy)):
             raise InputError(f"balance: {self.balance!r} is none of {', '.join(get_args(Policy))}")
+        if self.objects == "elements" and self.balance not in (None, "runs"):
+            raise InputError(f"--balance: elements that pass objects on have a run of regions "
+                             f"each, not {self.balance}; take runs, or leave it out")
         if (self.balance, self.balancer) == ("learnt", "hardware"):
             raise InputError("--balance: learnt is for a host; the hardware packs the last "
                              "picture's counts as they are: take --balance clocks, or --balancer "

@@ -22,7 +22,7 @@ from .frames.node_counts import (
     unit_differences,
 )
 from .frames.object_figures import object_figures
-from .frames.region_figures import region_figures
+from .frames.region_figures import region_figures, sent_table
 from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
 from .frames.setup_timing import setup_timing
@@ -101,7 +101,8 @@ class RenderJob:
         observed = replace(self.configuration, observe=True)  # costs no clock
         return simulate_frame(observed, self.scene.display_list, engine=self.options.engine,
                               memory_seed=self.options.random_memory, waveform=recording,
-                              progress=progress)
+                              progress=progress, table=sent_table(
+                                  self.configuration, self.options.policy(self.configuration)))
 
     def _judged(self, simulation: Simulation) -> Rendering:
         configuration, display_list = self.configuration, self.scene.display_list

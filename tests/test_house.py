@@ -22,12 +22,11 @@ WINGS = {
         "wires", "arithmetic", "backplane", "mapping", "observer", "triangle_setup", "objects",
         "rasteriser", "regions", "depth_test", "merging", "memory_unit", "processing_element",
         "lines_to_all", "balancing", "controller", "video", "nodes", "snooping", "direct",
-        "machine",
-        "components"),
+        "forwarding", "machine", "components"),
     "testbenches": (
         "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
-        "render", "render_frames", "comparison", "speed", "fpga", "precision", "figures",
-        "cocotb_bench", "command_line", "studies"),
+        "render", "render_frames", "comparison", "speed", "fpga", "precision", "atlas",
+        "figures", "cocotb_bench", "command_line", "studies"),
     "package": ("__main__",),
 }
 ORDER = list(WINGS)

@@ -41,6 +41,7 @@ from .broadcast import ControllersBroadcast, ListBroadcasts, NodeQueues, SetUp, 
 from .direct.direct_work import DirectWork
 from .element_latencies import NEVER, PIPELINE, Pipeline
 from .node_work import NodeWork
+from .objects.element_objects import ForwardedRun
 from .objects.node_objects import ObjectRun
 from .regions.region_work import RegionWork
 
@@ -55,7 +56,8 @@ class CyclePrediction:
     ``finished``          float64 (n,): clocks from the first triangle taken, or from the command to
                           draw the lists, until the machine is done, were this triangle the last;
                           of those that may cover a pixel, in the order in which the host sends
-                          them, those of lists in the display list's
+                          them, those of lists in the display list's; where elements pass objects
+                          on of each object
     ``setup_bound``       clocks to set up all of them at best; 0 where that was done before; where
                           nodes do it, all those of one
     ``broadcast_bound``   clocks to send all of them, or the objects, at best
@@ -118,6 +120,8 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         if isinstance(organisation, DealtRegions) else
         [NodeWork(organisation, display_list, node, pipeline, after)
          for node in range(configuration.nodes)])
+    if configuration.forwards_objects and setup is not None:
+        return _predict_forwarded(configuration, display_list, works[0], pipeline, setup)
     if configuration.objects in ("nodes", "controller") and setup is not None:
         return _predict_objects(configuration, display_list, works, pipeline, setup)
     sent, nodes, _ = _sending_order(
@@ -140,6 +144,17 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
         np.array(finished), _setup_bound(display_list, setup, sum(kept), retained),
         float(max(kept) if retained else sum(kept)),
         np.concatenate([work.bound for work in works]), max(work.port_bound for work in works))
+
+
+def _predict_forwarded(configuration: MachineConfiguration, display_list: DisplayList,
+                       work: NodeWork, pipeline: Pipeline,
+                       setup: SetupTiming) -> CyclePrediction:
+    """Where processing elements make the triangles of objects, and pass objects on."""
+    run = ForwardedRun(configuration, display_list, work, pipeline, setup)
+    return CyclePrediction(
+        np.array(run.finished),
+        float(np.maximum(setup.interval * run.kept, run.made).max(initial=0)),
+        float(run.commands), work.bound, work.port_bound)
 
 
 def _predict_objects(configuration: MachineConfiguration, display_list: DisplayList,

@@ -15,25 +15,11 @@ from ..specification.commands import command_words
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.sampling_grid import Grid
+from .forwarding import made_at_elements
+from .made import Made
 from .object_words import made_of_objects
 
 Int64 = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Made:
-    """At one place that makes triangles, in one frame.
-
-    ``objects``  that it is sent whole
-    ``made``     triangles of these
-    ``sent``     triangles that it is sent as vertices, of objects that are clipped
-    ``dropped``  triangles of either kind that set-up drops, which have no pixel
-    """
-
-    objects: int
-    made: int
-    sent: int
-    dropped: int
 
 
 @dataclass(frozen=True)
@@ -57,6 +43,8 @@ def golden_made(configuration: MachineConfiguration, display_list: DisplayList) 
     """Of each place that makes triangles, from left to right."""
     if configuration.objects == "nodes":
         return made_at_nodes(configuration, display_list)
+    if configuration.forwards_objects:
+        return made_at_elements(configuration, display_list)
     return [made_at_controller(configuration, display_list)]
 
 

@@ -110,7 +110,13 @@ def _shares(configuration: MachineConfiguration, listed: ObjectDisplayList
     it."""
     count = len(listed.counts)
     if configuration.keeps_list_order:
-        return {"round": np.arange(count)}, np.arange(count)
+        if count > 1 << configuration.order_bits:
+            raise InputError(f"objects: the pixels of the machine tell "
+                             f"{1 << configuration.order_bits:,} apart, the scene has {count:,}: "
+                             "export a machine for this scene")
+        dealt = ObjectShares.of(listed, configuration.processing_elements,
+                                configuration.packet).objects
+        return {"round": np.arange(count), "element": dealt.node}, dealt.host_place
     shares = organisation_of(configuration).shares(listed)
     if not isinstance(shares, ObjectShares):
         return {}, np.arange(count)

@@ -13,7 +13,7 @@ from ..specification.configuration import MachineConfiguration
 from ..specification.interlace import Interlace
 from .host_broadcast import HostBroadcast
 from .organisation import Bool, Coordinate, ElementBlock, Int64, Resolution
-from .region_table import slots_of, static_table
+from .region_table import runs_table, slots_of, static_table
 
 
 class DealtRegions(HostBroadcast):
@@ -30,7 +30,9 @@ class DealtRegions(HostBroadcast):
         super().__init__(configuration)
         self.regions = configuration.dealt_regions
         self.elements = configuration.processing_elements
-        self.table = (static_table(self.regions.count, self.elements) if table is None
+        # What a machine begins with: where elements pass objects on each has a run.
+        begin = runs_table if configuration.forwards_objects else static_table
+        self.table = (begin(self.regions.count, self.elements) if table is None
                       else np.asarray(table, np.int64))
         self.slot = slots_of(self.table)
 

@@ -27,6 +27,18 @@ def static_table(regions: int, elements: int) -> Int64:
     return np.arange(regions, dtype=np.int64) % elements
 
 
+def runs_table(regions: int, elements: int) -> Int64:
+    """A run of regions for each element: to element i of n the regions from i · R / n, rounded
+    down, up to those of element i + 1.  Where a region is as wide as the screen these are Blazek's
+    strips (1991), of any number of rows each.
+
+    >>> runs_table(7, 3).tolist()
+    [0, 0, 1, 1, 2, 2, 2]
+    """
+    ends = np.arange(1, elements + 1, dtype=np.int64) * regions // elements
+    return np.searchsorted(ends, np.arange(regions), side="right")
+
+
 def slots_of(table: Int64) -> Int64:
     """int64 (regions,): how many lower regions its processing element has."""
     order = np.argsort(table, kind="stable")

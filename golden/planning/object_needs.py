@@ -8,8 +8,9 @@ from typing import Any
 
 from ..objects.object_words import made_of_objects
 from ..specification.commands import layout_bits, mesh_triangle_layout
-from ..specification.configuration import MachineConfiguration
+from ..specification.configuration import MAXIMUM_ORDER_BITS, MachineConfiguration
 from ..specification.display_list import DisplayList
+from ..specification.errors import InputError
 from .plan_line import PlanLine
 
 
@@ -45,6 +46,12 @@ def most_of(needs: Sequence[ObjectNeeds]) -> ObjectNeeds:
 def fields_of_objects(needs: ObjectNeeds, rest: dict[str, Any]) -> dict[str, int]:
     """The fields that are planned for objects, those that are given left out."""
     planned = {"meshes": needs.meshes, "mesh_triangles": needs.triangles}
+    if rest["objects"] == "elements":
+        planned["order_bits"] = (needs.objects - 1).bit_length() if needs.objects else 0
+        if planned["order_bits"] > MAXIMUM_ORDER_BITS:
+            raise InputError(f"objects: elements that pass objects on tell "
+                             f"{1 << MAXIMUM_ORDER_BITS:,} apart, the scene has "
+                             f"{needs.objects:,}; have their triangles made at the controller")
     return {name: number for name, number in planned.items() if not rest.get(name)}
 
 
@@ -54,7 +61,11 @@ def lines_of_objects(planned: MachineConfiguration, needs: ObjectNeeds) -> list[
     assert planned.objects is not None
     count = places[planned.objects]
     where = "the controller" if count == 1 else f"each of {count} {planned.objects}"
+    order = [PlanLine("order bits", str(planned.order_bits), "-",
+                      "objects come in any order, so each pixel keeps the number of its own")
+             ] if planned.keeps_list_order else []
     return [
+        *order,
         PlanLine("meshes", f"{planned.meshes:,}", "-",
                  f"{needs.objects:,} objects are {needs.meshes:,} meshes, moved"),
         PlanLine("mesh triangles", f"{planned.mesh_triangles:,}", "-",

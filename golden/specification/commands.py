@@ -206,10 +206,12 @@ def mesh_layout(configuration: MachineConfiguration) -> Layout:
 
 def object_layout(configuration: MachineConfiguration) -> Layout:
     """The body of ``OBJECT``: which mesh, what is added to each of its vertices modulo their
-    fields, and the colour that its shades modulate."""
+    fields, and the colour that its shades modulate; where processing elements pass objects on, the
+    one that is given it."""
     return {"mesh": configuration.mesh_bits, **_place(configuration),
             **dict.fromkeys(CHANNELS, CHANNEL_BITS),
-            **_round(configuration), **_node(configuration)}
+            **_round(configuration), **_node(configuration),
+            **({"element": configuration.element_bits} if configuration.forwards_objects else {})}
 
 
 def frame_start_layout() -> Layout:

@@ -21,6 +21,12 @@ FRAGMENTS_OF_ELEMENT = 4
 #: them is long, so that it can be full.
 OUTLINES_WAITING = 16
 
+#: Objects of the host that can wait in a processing element that passes objects on, so that the
+#: host goes on to other elements meanwhile; and objects that can wait there from each neighbour, so
+#: that channels go on while an object is drawn.
+OBJECTS_WAITING = 8
+OBJECTS_PASSING = 8
+
 
 def depth_lanes(configuration: MachineConfiguration) -> int:
     """Lanes of a one-port depth test: 1 where no processing element has more than one memory

@@ -41,11 +41,11 @@ class MakingObjects(OneNode):
 
     def __init__(self, *, configuration: MachineConfiguration):
         super().__init__(configuration=configuration)
-        self._objects = OwnObjectCommands(configuration=configuration)
+        self._own_objects = OwnObjectCommands(configuration=configuration)
 
     @property
     def setup(self):
-        return self._objects.setup
+        return self._own_objects.setup
 
     @property
     def storages(self):
@@ -76,14 +76,14 @@ class MakingObjects(OneNode):
 
     def commands(self, m, controller):
         super().commands(m, controller)
-        self._objects.commands(m, controller)
+        self._own_objects.commands(m, controller)
         with m.Case(Opcode.READ_COUNTERS):
             controller.announce(m, Operation.READ_COUNTERS, "COUNTING", when=controller.quiet)
             m.d.comb += controller.commands.ready.eq(controller.broadcast.strobe)
 
     def states(self, m, controller):
         super().states(m, controller)
-        self._objects.states(m, controller)
+        self._own_objects.states(m, controller)
         with m.State("COUNTING"), m.If(controller.quiet):
             m.next = "REPORT_MADE"
         with m.State("REPORT_MADE"):

@@ -2,12 +2,13 @@
 
 from amaranth.hdl import *
 from amaranth.lib import wiring
-from amaranth.lib.wiring import Out
+from amaranth.lib.wiring import In, Out
 
 from ...golden.specification.commands import Fault, Opcode, ResponseKind
 from ...golden.specification.configuration import MachineConfiguration
 from ..backplane.region_lines import RegionLines
 from ..backplane.words import Operation
+from .object_commands import ObjectCommands
 from .one_node import OneNode
 from .region_table import RegionTable, region_layout
 
@@ -17,13 +18,16 @@ __all__ = ["RegionNode"]
 class RegionNode(OneNode):
     """A frame is drawn by the table that came whole before it, or else by that of the frame before.
 
-    Before the boot is over the controller itself deals the regions out in turn.  Later tables come
+    Before the boot is over the controller itself deals the regions out in turn, or, where
+    processing elements pass objects on, in runs, and then no other table comes.  Later tables come
     from the host; ``REGION`` is taken in one clock, inside a frame too, where it is refused.
     """
 
     def __init__(self, *, configuration: MachineConfiguration):
         self.configuration = configuration
         self.table = RegionTable(configuration=configuration)
+        self._forwarded = (ObjectCommands(configuration=configuration)
+                           if configuration.forwards_objects else None)
         #: Processing elements in the cage.
         self._elements = Signal(configuration.element_bits, name="elements")
         #: The first table is being dealt.
@@ -35,7 +39,8 @@ class RegionNode(OneNode):
 
     @property
     def members(self) -> dict[str, wiring.Member]:
-        return {"regions": Out(RegionLines(self.configuration)), "shown_table": Out(1)}
+        return {"regions": Out(RegionLines(self.configuration)), "shown_table": Out(1),
+                **({} if self._forwarded is None else {"lists_full": In(1)})}
 
     def add_to(self, m, controller):
         m.submodules.region_table = table = self.table
@@ -67,11 +72,34 @@ class RegionNode(OneNode):
         with m.If(controller.pictures.initialise):
             m.d.sync += self._dealing.eq(1)
         with m.If(self._dealing):
-            self.deal(m, element)
-            m.d.sync += element.eq(Mux(element == self._elements - 1, 0, element + 1))
+            if self.configuration.forwards_objects:
+                self._deal_runs(m, element)
+            else:
+                self.deal(m, element)
+                m.d.sync += element.eq(Mux(element == self._elements - 1, 0, element + 1))
             with m.If(self.table.whole):
                 m.d.comb += [self.table.offer.eq(0), self.table.take.eq(1)]
                 m.d.sync += self._dealing.eq(0)
+
+    def _deal_runs(self, m, element):
+        """In place of that, where processing elements pass objects on: a run for each.
+
+        Region r of R is of the first element i of n for which (r + 1) · n is not more than
+        (i + 1) · R.  ``over`` is how much more it is for the next region; while it is, the next
+        element is looked at.
+        """
+        regions = self.configuration.dealt_regions.count
+        over = Signal(range(-regions, (1 << len(self._elements)) + 1), name="over")
+        begun = Signal(name="begun_dealing")
+        next_is_later = over > 0
+        m.d.sync += begun.eq(1)
+        with m.If(~begun):
+            m.d.sync += over.eq(self._elements - regions)
+        with m.Elif(next_is_later):
+            m.d.sync += [element.eq(element + 1), over.eq(over - regions)]
+        with m.Else():
+            self.deal(m, element)
+            m.d.sync += over.eq(over + self._elements)
 
     def deal(self, m, element):
         """Inside a clock in which the controller itself gives the next region to ``element``."""
@@ -106,7 +134,7 @@ class RegionNode(OneNode):
         m.d.comb += self.table.swap.eq(1)
 
     def commands(self, m, controller):
-        if self.configuration.balancer == "host":
+        if self.configuration.takes_tables:
             with m.Case(Opcode.REGION):
                 m.d.comb += [self.table.offer.eq(1), controller.commands.ready.eq(1)]
                 with m.If(self.table.fault != 0):
@@ -115,9 +143,13 @@ class RegionNode(OneNode):
             with m.Case(Opcode.READ_REGIONS):
                 controller.announce(m, Operation.READ_REGIONS, "ANSWERING", when=controller.quiet)
                 m.d.comb += controller.commands.ready.eq(controller.broadcast.strobe)
+        if self._forwarded is not None:
+            self._forwarded.commands(m, controller)
 
     def states(self, m, controller):
         with m.State("REFUSE_REGION"):
             controller.respond(m, ResponseKind.ERROR, self._fault, "COMMAND")
         with m.State("REFUSE_TABLE"):
             controller.respond(m, ResponseKind.ERROR, Fault.REGION_TO_NOBODY, "START_FRAME")
+        if self._forwarded is not None:
+            self._forwarded.states(m, controller)

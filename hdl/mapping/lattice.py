@@ -67,7 +67,7 @@ class LatticeBlock(wiring.Component):
 
     The pixels of an aligned power-of-two block of units form a regular lattice;
     a processing element walks its domain block by block (one, where the shares
-    are equal powers of two).  Interlaced in squares or lines, a share is the only block; diagonally,
+    are equal powers of two).  In squares or lines a share is the only block; diagonally
     all units are, and all pixels theirs.  Skewed, every other row of a block of one unit is
     shifted.
 

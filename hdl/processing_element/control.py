@@ -31,6 +31,8 @@ class ProcessingElementControl(wiring.Component):
         The low bits of a depth word that are no depth, and not reported.
     counts_regions: bool
         Regions are dealt out, and what they cost is counted.
+    counts_objects: bool
+        Objects are passed on, and what becomes of them is counted.
 
     Members
     -------
@@ -58,13 +60,15 @@ class ProcessingElementControl(wiring.Component):
         No operation here, and the datapath is empty.
     counts_start: Out(1), counts_done: In(1), counts: In(stream of RESPONSE_VALUE_BITS)
         A third service, of ``RegionCounts``, only if it ``counts_regions``; 0 while not valid.
+    made, dropped, forwarded: In(RESPONSE_VALUE_BITS)
+        Further counts to report, only if it ``counts_objects``.
 
     Fuchs & Johnson, the steps after figure 12.  Raises ``ValueError`` where a number of bits is
     not positive.
     """
 
     def __init__(self, *, id_bits: int, depth_bits: int, order_bits: int = 0,
-                 counts_regions: bool = False):
+                 counts_regions: bool = False, counts_objects: bool = False):
         for name, bits in (("id_bits", id_bits), ("depth_bits", depth_bits)):
             if bits < 1:
                 raise ValueError(f"{name} must be positive, not {bits!r}")
@@ -74,6 +78,9 @@ class ProcessingElementControl(wiring.Component):
         self.depth_bits = depth_bits
         self.order_bits = order_bits
         self.counts_regions = counts_regions
+        # What is reported after the work, and with which member.
+        self._further = {kind: kind.name.lower() for kind in (
+            ResponseKind.MADE, ResponseKind.DROPPED, ResponseKind.FORWARDED)[:3 * counts_objects]}
         super().__init__({
             "operations": In(stream.Signature(Operation, payload_init=Operation.SURVEY)),
             "drawing": In(1),
@@ -91,6 +98,7 @@ class ProcessingElementControl(wiring.Component):
             "idle": Out(1),
             **({"counts_start": Out(1), "counts_done": In(1),
                 "counts": In(stream.Signature(RESPONSE_VALUE_BITS))} if counts_regions else {}),
+            **dict.fromkeys(self._further.values(), In(RESPONSE_VALUE_BITS)),
         })
 
     @property
@@ -134,8 +142,9 @@ class ProcessingElementControl(wiring.Component):
                 with m.If(self.read_back_done):
                     m.d.comb += operations.ready.eq(1)
                     m.next = "DRAW"
-            for kind, following in (("DOMAIN", "DRAW"), ("FRAGMENTS", "REPORT_BUSY"),
-                                    ("BUSY", "DRAW")):
+            order = ["FRAGMENTS", "BUSY", *(kind.name for kind in self._further)]
+            after = [*(f"REPORT_{kind}" for kind in order[1:]), "DRAW"]
+            for kind, following in (("DOMAIN", "DRAW"), *zip(order, after, strict=True)):
                 with m.State(f"REPORT_{kind}"):
                     m.d.comb += self.responses.valid.eq(1)
                     with m.If(self.responses.ready):
@@ -165,6 +174,8 @@ class ProcessingElementControl(wiring.Component):
         }
         if self.counts_regions:
             reports[ResponseKind.REGION_COUNT] = self.counts.valid, self.counts.payload
+        reports |= {kind: (state.ongoing(f"REPORT_{kind.name}"), getattr(self, member))
+                    for kind, member in self._further.items()}
         kind_bits = max(reports).bit_length()  # other boards say greater ones
         kinds = [Mux(now, C(kind, kind_bits), 0) for kind, (now, _) in reports.items()]
         values = [Mux(now, value, 0) for now, value in reports.values()]

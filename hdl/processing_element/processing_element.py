@@ -72,7 +72,8 @@ class ProcessingElement(DrawingElement):
         self._control = ProcessingElementControl(id_bits=configuration.id_bits,
                                                  depth_bits=configuration.rank_bits,
                                                  order_bits=configuration.order_bits,
-                                                 counts_regions=counts_regions(configuration))
+                                                 counts_regions=counts_regions(configuration),
+                                                 counts_objects=configuration.forwards_objects)
         self._survey = Survey(**bits)
         self._read_back = DepthReadBack(**bits)
         self._selector = MemoryBusSelector(**bits)
@@ -88,7 +89,13 @@ class ProcessingElement(DrawingElement):
                if self._merge is not None else {}),
             **({} if configuration.regions is None else
                {"regions": In(RegionLines(configuration))}),
+            **self.members,
         }, configuration=configuration)
+
+    @property
+    def members(self) -> dict[str, wiring.Member]:
+        """What a card has besides that does more."""
+        return {}
 
     @property
     def latency(self) -> int:
@@ -103,7 +110,7 @@ class ProcessingElement(DrawingElement):
         m.submodules.link = self._link
         if self._picture is not None:
             m.submodules.picture = self._picture
-        self._connect_broadcast(wires(m, "operation_wires"), self.broadcast)
+        self._connect_broadcast(wires(m, "operation_wires"), self._heard)
         drawing = wires(m, "drawing_wires")
         self._connect_drawing(m, drawing, self.depth_test.busy)
         if self._merge is None:
@@ -122,8 +129,13 @@ class ProcessingElement(DrawingElement):
         if self.configuration.observe:
             scanned = self.right.lines.scanned
             self._observe(m, self._drawn, scanned.bit_select(self._drawn.payload.unit[0], 1))
-        self._connect_responses(wires(m, "response_wires"), self.broadcast)
+        self._connect_responses(wires(m, "response_wires"), self._heard)
         return m
+
+    @property
+    def _heard(self):
+        """The lines that tell it what to do."""
+        return self.broadcast
 
     def _connect_merge(self, m, pipeline, merge):
         """What the node receives goes to the depth test when nothing is drawn."""

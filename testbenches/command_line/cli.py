@@ -6,9 +6,10 @@ import click
 
 from .boards_command import boards_command
 from .cache_command import cache_command
+from .cages.atlas_command import atlas_command
+from .cages.compare_command import compare_command
 from .check_verilog_command import check_verilog_command
 from .command_group import CommandGroup
-from .compare_command import compare_command
 from .engines_command import engines_command
 from .export_command import export_command
 from .figures_command import figures_command
@@ -41,7 +42,7 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for command in (bench_command, boards_command, cache_command, check_verilog_command,
+for command in (atlas_command, bench_command, boards_command, cache_command, check_verilog_command,
                 compare_command, engines_command, export_command, figures_command, plan_command,
                 precision_command, render_command, scenes_command):
     main.add_command(command)

@@ -239,7 +239,8 @@ _DEALING_OPTIONS = (
                  help="With regions: what is counted of each in a picture, by which they are dealt "
                  "out for the next one: triangles, or the clocks these take it; learnt are clocks, "
                  "too, which the host foretells from the last three pictures; static counts "
-                 "nothing, and they stay.  [default: learnt; clocks with --balancer hardware]"),
+                 "nothing, and they stay, dealt out in turn; runs likewise, one run of regions for "
+                 "each element.  [default: learnt; clocks with --balancer hardware]"),
     click.option("--balancer", type=click.Choice(get_args(Balancer)),
                  help="With regions: who deals them out, the host, or the machine itself.  "
                  "[default: host]"),

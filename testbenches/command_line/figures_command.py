@@ -17,7 +17,7 @@ from .command_group import EXIT_DIFFERENT
 from .command_options import Size
 
 #: The papers that can be redrawn.
-PAPERS = ("cox-hanrahan", "ellsworth")
+PAPERS = ("cox-hanrahan", "ellsworth", "blazek")
 
 
 @click.command(name="figures")
@@ -55,6 +55,11 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
     for each frame share the work of 2 to 512 processors, by triangles, as the paper counts, and by
     clocks; and what cures the loss where the last frame's counts have to do.
 
+    blazek: E. M. Blazek, Parallel Image Generation Using the Z-Buffering Algorithm on a Medium
+    Grained Distributed Memory Model Computer, 1991.  Figures 12 to 19: speed-up and efficiency of
+    his four methods, for 1 to 2,048 spheres on 1 to 32 nodes, on his hypercube, by a model of its
+    messages, and on our machines, in clocks; and how far that depends on what things cost.
+
     Writes PAPER.html, one page complete in itself, PAPER.json and PAPER.png, some of the figures,
     to DIR.  What was measured is kept: an interrupted run goes on where it was.
 
@@ -68,6 +73,8 @@ def figures_command(command_line: str, /, paper: str, as_json: bool, out: Path,
       cardcage figures ellsworth --no-rtl
       cardcage figures ellsworth --no-rtl --frames 4 --size 128x96 --model teapot
       cardcage figures ellsworth
+      cardcage figures blazek --no-rtl
+      cardcage figures blazek
 
     Exit status: 0 every simulated picture and count as golden, 1 otherwise, 2 the input or the
     system is at fault.

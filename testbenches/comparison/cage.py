@@ -80,16 +80,20 @@ class Cage:
         return replace(asked, cards=self.cards, retain=self.retained or None,
                        list_words=asked.list_words if self.retained else None,
                        regions=self.regions, **dealing,
-                       packet=None if merge is None else asked.packet,
+                       packet=None if merge is None and not self._forwards(asked, merge)
+                       else asked.packet,
                        queue=asked.queue if merge == DIRECT_MERGE else None,
                        **self._objects(asked, merge))
+
+    def _forwards(self, asked: MachineOptions, merge: str | None) -> bool:
+        return asked.objects == "elements" and merge is None and self.regions is not None
 
     def _objects(self, asked: MachineOptions, merge: str | None) -> dict[str, Any]:
         """Where this cage makes the triangles of objects, as is asked; another kind of cage is sent
         triangles, which are set up by the same means."""
         fits = asked.objects is not None and not self.retained and {
             "nodes": merge in NODE_ENDS, "controller": merge is None,
-            "elements": merge is None and self.regions is not None}[asked.objects]
+            "elements": self._forwards(asked, merge)}[asked.objects]
         fields: dict[str, Any] = {name: getattr(asked, name) if fits else None
                                   for name in ("objects", "mesh_triangles", "meshes")}
         setup = asked.setup or (None if asked.objects is None else "fast")

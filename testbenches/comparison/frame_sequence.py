@@ -94,11 +94,12 @@ class FrameSequence:
                  policy: Policy | None = None) -> None:
         self._configuration = configuration
         self._display_list = display_list
-        whole = frame_commands(configuration, display_list)
-        self._opcodes = [opcode_of(word) for word in whole]
-        self._start = self._opcodes.index(Opcode.FRAME_START)
         tables = (None if configuration.regions is None
                   else RegionTables(configuration, [display_list] * FRAMES, policy=policy))
+        whole = frame_commands(configuration, display_list,
+                               table=None if tables is None else tables.sent(0))
+        self._opcodes = [opcode_of(word) for word in whole]
+        self._start = self._opcodes.index(Opcode.FRAME_START)
         sent = None if tables is None else tables.sent(1)
         dealing = [] if sent is None else table_commands(configuration, sent)
         self._dealing = len(dealing)

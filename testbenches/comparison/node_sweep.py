@@ -16,7 +16,7 @@ from math import gcd
 
 import numpy as np
 
-from ...golden.cycles.cycle_model import predict_cycles
+from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
 from ...golden.cycles.merge_clocks import predict_merge
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
@@ -96,13 +96,19 @@ class FrameTime:
         return self.draw + self.merge
 
 
-def predicted_time(configuration: MachineConfiguration, display_list: DisplayList,
-                   retained: bool) -> FrameTime:
+def predicted_drawing(configuration: MachineConfiguration, display_list: DisplayList,
+                      retained: bool) -> CyclePrediction:
     """What the cycle model says; where regions are dealt out, by what the scene itself costs."""
     table = (None if configuration.regions is None else
              RegionTables(configuration, [display_list] * 2).table(1))
-    draw = predict_cycles(configuration, display_list, setup=setup_timing(configuration),
-                          retained=retained, table=table).cycles
+    return predict_cycles(configuration, display_list, setup=setup_timing(configuration),
+                          retained=retained, table=table)
+
+
+def predicted_time(configuration: MachineConfiguration, display_list: DisplayList,
+                   retained: bool) -> FrameTime:
+    """The clocks of ``predicted_drawing``, and those to merge."""
+    draw = predicted_drawing(configuration, display_list, retained).cycles
     return FrameTime(round(draw), predict_merge(configuration, display_list))
 
 

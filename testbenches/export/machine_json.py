@@ -65,6 +65,8 @@ def describe(configuration: MachineConfiguration, verilog: str,
         timed += ("triangle_setup",)
     if name is None and configuration.objects is not None:
         timed += ("mesh_memory", "object_reader", "object_setup")
+    if name is None and configuration.forwards_objects:
+        timed += ("element_gate", "object_forwarder", "object_reach")
     return {
         "version": version("cardcage"),
         "top": top,
@@ -185,7 +187,9 @@ def _objects(configuration: MachineConfiguration) -> dict[str, Any] | None:
         "meshes": configuration.meshes,
         "packet_counts": "objects",
         "counters": "READ_COUNTERS: of each place that makes triangles MADE and DROPPED, those "
-                    "made of objects and those that set-up dropped there since the frame's start",
+                    "made of objects and those that set-up dropped there since the frame's start"
+                    + ("; then FORWARDED, objects passed left and right"
+                       if configuration.forwards_objects else ""),
         "explained_in": "docs/decompositions.md",
     }
 

@@ -10,6 +10,10 @@ from typing import Any
 from ...golden.specification.errors import InputError
 from ..support.text_table import TextTable
 from . import cox_hanrahan_facts, figure_tables
+from .blazek import facts as blazek_facts
+from .blazek import figure_tables as blazek_tables
+from .blazek import page as blazek_page
+from .blazek.blazek import BlazekOptions, redraw_blazek
 from .cox_hanrahan import FiguresOptions, redraw_cox_hanrahan
 from .cox_hanrahan_page import FIGURE_FILES, write_cox_hanrahan
 from .ellsworth import facts, page
@@ -48,4 +52,7 @@ PAPERS = {
     facts.PAPER: Paper(
         EllsworthOptions, redraw_ellsworth, page.FIGURE_FILES, page.write_ellsworth,
         facts.ellsworth_facts, ellsworth_tables.headline, ellsworth_tables.tables),
+    blazek_facts.PAPER: Paper(
+        BlazekOptions, redraw_blazek, blazek_page.FIGURE_FILES, blazek_page.write_blazek,
+        blazek_facts.blazek_facts, blazek_tables.headline, blazek_tables.tables),
 }

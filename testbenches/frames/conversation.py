@@ -111,7 +111,7 @@ def _silent(organisation: Organisation) -> list[Opcode]:
         silent += [Opcode.LOAD, Opcode.DRAW_LISTS, Opcode.CLEAR_LISTS]
     if configuration.objects is not None:  # of meshes that were loaded
         silent += [Opcode.CLEAR_LISTS, Opcode.MESH, Opcode.MESH_TRIANGLE, Opcode.OBJECT]
-    if configuration.regions is not None and configuration.balancer == "host":
+    if configuration.takes_tables:
         silent.append(Opcode.REGION)  # of a table as it should be
     return silent
 
@@ -133,7 +133,10 @@ def _counters(organisation: Organisation) -> list[Owed]:
     each memory unit that takes its fragments from all elements."""
     direct, owed = organisation.configuration.merges_directly, []
     for node in organisation.each:
-        owed += [Owed(ResponseKind.FRAGMENTS), Owed(ResponseKind.BUSY)] * len(node.domains)
+        element = [ResponseKind.FRAGMENTS, ResponseKind.BUSY]
+        if organisation.configuration.forwards_objects:
+            element += [ResponseKind.MADE, ResponseKind.DROPPED, ResponseKind.FORWARDED]
+        owed += [Owed(kind) for kind in element] * len(node.domains)
         owed += [Owed(ResponseKind.SENT)] * (organisation.merges and not direct)
         if organisation.configuration.objects == "nodes":
             owed += [Owed(ResponseKind.MADE), Owed(ResponseKind.DROPPED)]

@@ -72,8 +72,11 @@ def _triangle_words(configuration: MachineConfiguration, display_list: DisplayLi
     """A command for each triangle, in the order in which the host sends them."""
     fitting = fitted(configuration, display_list)
     shares = organisation_of(configuration).shares(display_list)
-    share = ({"node": shares.node, "round": shares.round} if configuration.node_bits
-             else triangle_words.NO_SHARE)
+    share = triangle_words.NO_SHARE
+    if configuration.node_bits:
+        share = {"node": shares.node, "round": shares.round}
+    elif configuration.keeps_list_order:  # all elements have them in the list's order
+        share = {"round": np.zeros(display_list.triangles, np.int64)}
     if configuration.setup == "hardware" and fraction_bits is None:
         words = triangle_words.triangles(configuration, fitting, share)
         return list(words[shares.host_order])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...golden.balancing.region_counts import loads, region_counts, utilisation
 from ...golden.balancing.region_grid import RegionGrid
-from ...golden.balancing.table_policy import Policy
+from ...golden.balancing.table_policy import UNCOUNTED_POLICIES, Policy, boot_table
 from ...golden.planning.scene_needs import fitted
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
@@ -34,7 +34,8 @@ def golden_counts(configuration: MachineConfiguration, display_list: DisplayList
 
 class RegionTables:
     """The tables of pictures that are drawn one after another: the first one is that with which
-    every machine begins, each other one is made of the golden counts of the pictures before.
+    every machine begins, or has runs, each other one is made of the golden counts of the pictures
+    before.
 
     Each is made when it is asked for; ``lists`` are the pictures' display lists, ``policy`` is as
     ``RegionHost`` has it.
@@ -57,7 +58,7 @@ class RegionTables:
     def table(self, number: int) -> Int64:
         """int64 (regions,): by which that picture is drawn, or would be after the last one."""
         while len(self._tables) <= number:
-            if self._host.policy != "static":
+            if self._host.policy not in UNCOUNTED_POLICIES:
                 self._host.pack(self.counts(len(self._tables) - 1))
             self._tables.append(self._host.table)
         return self._tables[number]
@@ -66,8 +67,8 @@ class RegionTables:
         """The same, where the host sends it before that picture: the machine makes none itself, and
         it is another than that of the picture before."""
         table = self.table(number)
-        if (number == 0 or self._configuration.balancer == "hardware"
-                or np.array_equal(table, self.table(number - 1))):
+        before = self.table(number - 1) if number else boot_table(self._configuration)
+        if self._configuration.balancer == "hardware" or np.array_equal(table, before):
             return None
         return table
 
@@ -133,6 +134,14 @@ class RegionFigures:
                       f"golden {self.next_table[region]}"
                       for region in np.flatnonzero(self.read_table != self.next_table).tolist()]
         return found
+
+
+def sent_table(configuration: MachineConfiguration, policy: Policy | None = None) -> Int64 | None:
+    """int64 (regions,): what a host has to say of the regions before the first picture; None where
+    nothing is to be said, or there are none."""
+    if configuration.regions is None:
+        return None
+    return RegionTables(configuration, [], policy=policy).sent(0)
 
 
 def region_figures(configuration: MachineConfiguration, display_list: DisplayList,

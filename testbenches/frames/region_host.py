@@ -9,8 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...golden.balancing.learnt_counts import LEARNT_FROM, learnt_counts
-from ...golden.balancing.table_policy import Policy, check_policy, default_policy
-from ...golden.organisations.region_table import packed_table, slots_of, static_table
+from ...golden.balancing.table_policy import (
+    UNCOUNTED_POLICIES,
+    Policy,
+    boot_table,
+    check_policy,
+    default_policy,
+    first_table,
+)
+from ...golden.organisations.region_table import packed_table, slots_of
 from ...golden.specification import commands
 from ...golden.specification.commands import Opcode
 from ...golden.specification.configuration import MachineConfiguration
@@ -46,12 +53,13 @@ class RegionHost:
     """The host's part of a machine whose regions are dealt out anew for each picture.
 
     ``table``  int64 (regions,): the processing element of each region, row by row, in the next
-               picture; at first that with which every machine begins
+               picture; at first that with which every machine begins, but for ``"runs"``
     ``policy``  of what it makes tables: ``"learnt"`` of the clocks that it foretells from the last
                three pictures (until there are three, of the last one's), ``"triangles"`` or
-               ``"clocks"`` of the last picture's counts, ``"static"`` of none.  Learnt where
-               nothing is said, the machine counts clocks and makes no tables itself; else what it
-               counts.  ``InputError`` for what the machine does not count for
+               ``"clocks"`` of the last picture's counts, ``"static"`` and ``"runs"`` of none: the
+               first one stays.  Learnt where nothing is said, the machine counts clocks and makes
+               no tables itself; else what it counts.  ``InputError`` for what the machine does
+               not count for
 
     Before a picture send ``commands()``, after it give the answers to ``READ_REGIONS`` to
     ``counted``.
@@ -74,9 +82,8 @@ class RegionHost:
         self.policy = policy or default_policy(configuration)
         check_policy(configuration, self.policy)
         self._seen: list[Int64] = []  # the counts of the last pictures, the last one first
-        self.table = static_table(configuration.dealt_regions.count,
-                                  configuration.processing_elements)
-        self._sent = self.table.copy()
+        self.table = first_table(configuration, self.policy)
+        self._sent = boot_table(configuration)
 
     def commands(self) -> list[int]:
         """What tells the machine of ``table``; nothing where it knows, or makes it itself."""
@@ -111,7 +118,7 @@ class RegionHost:
     def pack(self, counts: Int64) -> None:
         """``counts``: int64 (regions,), row by row, after each picture; where the machine counts
         nothing, they are not looked at."""
-        if self.policy == "static":
+        if self.policy in UNCOUNTED_POLICIES:
             return
         if self.policy == "learnt":
             self._seen = [np.asarray(counts, np.int64), *self._seen][:LEARNT_FROM]

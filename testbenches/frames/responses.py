@@ -61,6 +61,8 @@ class Simulation:
     ``made``             triangles that each place made of objects, in its own count; empty where
                          none does
     ``dropped``          of these, and of those that came there as vertices, what set-up dropped
+    ``forwarded``        objects that each processing element passed left, and right, in its own
+                         count; empty where none does
     ``slot_counts``      int64 (elements, slots): what each processing element counted of its
                          regions; None where that was not read
     ``next_table``       int64 (regions,): the table that the machine has made for the next picture;
@@ -92,6 +94,7 @@ class Simulation:
     followed: Sequence[int] = ()
     made: Sequence[int] = ()
     dropped: Sequence[int] = ()
+    forwarded: Sequence[tuple[int, int]] = ()
     slot_counts: NDArray[np.int64] | None = None
     next_table: NDArray[np.int64] | None = None
 
@@ -113,6 +116,7 @@ class Answers:
     ``followed``   int64 (readings, units): likewise
     ``made``       int64 (readings, places): triangles made of objects, where some are
     ``dropped``    int64 (readings, places): likewise, triangles that set-up dropped
+    ``forwarded``  int64 (readings, elements, 2): objects passed left, and right, where some are
     ``slot_counts``  int64 (readings, elements, slots): what was counted of regions, as often as
                    that was read
     ``tables``     int64 (readings, regions): tables that the machine made, likewise
@@ -149,6 +153,10 @@ class Answers:
                          ResponseKind.MADE, ResponseKind.DROPPED))
         if configuration.merges_directly:
             self.sent = self.fragments
+        passed = self._fields(ResponseKind.FORWARDED)
+        self.forwarded = np.array([(each["left"], each["right"]) for each in passed], np.int64
+                                  ).reshape(len(self.fragments), len(passed)
+                                            // max(1, len(self.fragments)), 2)
         self.slot_counts = np.array(self._values[ResponseKind.REGION_COUNT], np.int64).reshape(
             -1, len(self._domains), configuration.slots or 1)
         self.tables = np.array(self._values[ResponseKind.TABLE_ENTRY], np.int64).reshape(
@@ -189,6 +197,7 @@ class Answers:
             followed=self.followed[reading].tolist() if read else [],
             made=self.made[reading].tolist() if read else [],
             dropped=self.dropped[reading].tolist() if read else [],
+            forwarded=list(map(tuple, self.forwarded[reading].tolist())) if read else [],
             slot_counts=self.slot_counts[counted] if read and len(self.slot_counts) else None,
             next_table=self.tables[counted] if read and len(self.tables) else None,
             owned=units["owned"],

@@ -26,8 +26,18 @@ def object_facts(figures: ObjectFigures | None) -> dict[str, Any] | None:
             {"objects": golden.objects, "golden_made": golden.made,
              "golden_dropped": golden.dropped, "sent": golden.sent,
              **({} if figures.made is None or figures.dropped is None else {
-                 "made": figures.made[place], "dropped": figures.dropped[place]})}
+                 "made": figures.made[place], "dropped": figures.dropped[place]}),
+             **_forwarded(figures, place)}
             for place, golden in enumerate(figures.golden)],
         "equal": not figures.differences,
         "differences": figures.differences,
     }
+
+
+def _forwarded(figures: ObjectFigures, place: int) -> dict[str, Any]:
+    """Objects that a processing element passed on; nothing where none does."""
+    if not figures.golden_forwarded:
+        return {}
+    golden, counted = figures.golden_forwarded, figures.forwarded
+    return {"golden_forwarded": list(golden[place]),
+            **({} if counted is None else {"forwarded": list(counted[place])})}

@@ -199,6 +199,8 @@ def _about_tables(configuration: MachineConfiguration, turn: int) -> list[int]:
         return []
     if configuration.balancer == "hardware":
         return [commands.command(Opcode.READ_TABLE)]
+    if not configuration.takes_tables:
+        return []
     regions, elements = configuration.dealt_regions.count, configuration.processing_elements
     return table_commands(configuration, (np.arange(regions) + turn) % elements)
 
@@ -207,7 +209,7 @@ def _tables(configuration: MachineConfiguration, words: Sequence[int],
             begins: Sequence[int]) -> list[Int64 | None]:
     """By which each good frame is drawn, where the host says so: another one than before it, if
     the words before had begun a frame."""
-    if configuration.regions is None or configuration.balancer == "hardware":
+    if not configuration.takes_tables:
         return [None] * len(begins)
     heard, used = HeardTables(configuration), []
     for word in words:

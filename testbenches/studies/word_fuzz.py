@@ -43,6 +43,8 @@ MACHINES: dict[str, dict[str, Any]] = {
     "regions, hardware": {"cards": "2x(PMM)", "width": 9, "height": 7, "regions": (3, 2),
                           "balancer": "hardware", "shading": "flat"},
     "objects": {"cards": "2x(PMC)", "setup": "hardware", "setup_interval": 8, "objects": "nodes"},
+    "objects passed on": {"cards": "3x(PM)", "setup": "hardware", "setup_interval": 8,
+                          "objects": "elements", "regions": (2, 4), "balance": "static"},
     "planned": {"cards": "2x(PM)"},
     "planned squares": {"cards": "4x(PM)", "block": 2},
     "larger": {"cards": "PMMPMM", "width": 48, "height": 40},
@@ -50,7 +52,7 @@ MACHINES: dict[str, dict[str, Any]] = {
 }
 
 #: Those that are worth compiling; pysim is quicker for the others, model and all.
-LARGER = ("larger", "larger set-up", "objects")
+LARGER = ("larger", "larger set-up", "objects", "objects passed on")
 
 
 @cache

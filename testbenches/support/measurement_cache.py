@@ -30,12 +30,17 @@ def keep(parts: Iterable[str], measured: dict[str, Any]) -> None:
 
     Where the cache cannot be written it is not kept.
     """
+    with suppress(OSError):
+        keep_or_raise(parts, measured)
+
+
+def keep_or_raise(parts: Iterable[str], measured: dict[str, Any]) -> None:
+    """The same; raises ``OSError`` where the cache cannot be written, or is full."""
 
     def write(folder: Path) -> None:
         (folder / _NAME).write_text(json.dumps(measured), encoding="utf-8")
 
-    with suppress(OSError):
-        store(content_hash(parts), write)
+    store(content_hash(parts), write)
 
 
 def measured_once(parts: Iterable[str], measure: Callable[[], dict[str, Any]]) -> dict[str, Any]:

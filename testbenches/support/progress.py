@@ -72,3 +72,19 @@ def step_bar(steps: int) -> Iterator[Callable[[str], None]]:
             begun += 1
 
         yield begin
+
+
+@contextmanager
+def points_bar(points: int) -> Iterator[Callable[[int, str], None]]:
+    """A function to tell how many more of ``points`` are there, and of which the last one was; it
+    shows how long the rest takes, and nothing where the error output is no terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda more, last: None
+        return
+    with Progress(BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} points"),
+                  TimeElapsedColumn(), TextColumn("elapsed, about"), TimeRemainingColumn(),
+                  TextColumn("left  {task.description}"), console=console,
+                  transient=True) as bar:
+        task = bar.add_task("", total=points)
+        yield lambda more, last: bar.update(task, advance=more, description=last)

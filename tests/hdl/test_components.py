@@ -12,7 +12,7 @@ from cardcage.testbenches.export.verilog import component_ports
 def test_every_component_is_a_part_of_a_machine(monkeypatch):
     """Of its class, with its ports: in a machine that sets triangles up, of one kind of memory or
     the other, of one node, or of nodes that merge in one way or the other, or that deals regions
-    out; or in nodes that make triangles of objects."""
+    out; or in nodes, or elements, that make triangles of objects."""
     parts = []
     made = wiring.Component.__init__
 
@@ -25,6 +25,8 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
             ("PMMPMM", {}), ("PMMPMM", {"memory_ports": 2}), ("PMMC", {}), ("PMMT", {}),
             ("PMMSF", {}), ("PPDMM", {"memory_ports": 2}),
             ("PMMC", {"objects": "nodes", "mesh_triangles": 9, "meshes": 2}),
+            ("PMMPMM", {"regions": (3, 4), "balance": "static", "objects": "elements",
+                        "mesh_triangles": 9, "meshes": 2, "order_bits": 3}),
             ("PMMPMM", {"regions": (3, 4), "balancer": "hardware"})):
         configuration = small_machine(cards, 9, 7, shading="gouraud", setup="hardware",
                                       **{"memory_ports": 1} | changes)

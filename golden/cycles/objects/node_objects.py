@@ -45,7 +45,7 @@ class ObjectRun:
         if isinstance(shares, ObjectShares):
             nodes, order = shares.objects.node, shares.objects.host_order
         first = np.cumsum(listed.counts) - listed.counts
-        self._places = [_places(work.primitive, listed.object_of, first, len(clipped))
+        self._places = [places_of(work.primitive, listed.object_of, first, len(clipped))
                         for work in works]
         self._works = [iter(work) for work in works]
         self._queues = [NodeQueues(work.elements, configuration.fifo_depth, pipeline)
@@ -91,7 +91,7 @@ class ObjectRun:
         self.finished.append(max(before, queue.finished))
 
 
-def _places(primitive: Int64, object_of: Int64, first: Int64, count: int) -> list[list[int]]:
+def places_of(primitive: Int64, object_of: Int64, first: Int64, count: int) -> list[list[int]]:
     """Of each object, which of its triangles may cover a pixel, counted in it."""
     number = object_of[primitive]
     places = (primitive - first[number]).tolist()

@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args
 from ..card_order import NODE_ENDS
 from ..errors import InputError
 from ..ranges import MAXIMUM_WORDS, check_whole
+from ..regions import Balance, Balancer
 from ..widths import Widths
 
 #: Where meshes are kept and the triangles of objects are made (Blazek 1991, chapter V): in each
@@ -26,6 +27,8 @@ class MakingFields(Widths):
 
     setup: Literal["host", "hardware"]
     list_words: int
+    balance: Balance
+    balancer: Balancer
     objects: Objects | None
     mesh_triangles: int
     meshes: int
@@ -47,10 +50,21 @@ class MakingFields(Widths):
         return self.meshes.bit_length()
 
     @property
+    def forwards_objects(self) -> bool:
+        """Processing elements pass objects on to their neighbours."""
+        return self.objects == "elements"
+
+    @property
+    def takes_tables(self) -> bool:
+        """The host says which regions of the screen are whose."""
+        return (self.regions is not None and self.balancer == "host"
+                and not self.forwards_objects)
+
+    @property
     def keeps_list_order(self) -> bool:
         """Objects come to a processing element in any order, so that pixels of one node keep the
         number of their object beside the depth: their order."""
-        return self.objects == "elements"
+        return self.forwards_objects
 
     def _check_objects(self) -> None:
         """``InputError`` where objects cannot be made so, or what is for objects is asked of a
@@ -82,7 +96,14 @@ class MakingFields(Widths):
         elif self.merge is not None:
             raise InputError(f"objects: {self.cards} has nodes, which make triangles of their own "
                              "objects; take nodes, or a cage of one node, such as 4x(PMM)")
-        elif self.objects == "elements" and self.regions is None:
+        elif self.objects == "elements":
+            self._check_forwarding()
+
+    def _check_forwarding(self) -> None:
+        if self.regions is None:
             raise InputError("objects: processing elements pass objects on to whom regions of the "
                              "screen are dealt; give regions as well, or make triangles at the "
                              "controller")
+        if self.balance != "static":
+            raise InputError(f"balance: {self.balance} deals regions out anew, and processing "
+                             "elements that pass objects on keep theirs; take static")

@@ -74,7 +74,8 @@ def _regions(figures: Sequence[RegionFigures]) -> str:
     configuration, counted = figures[0].configuration, figures[0].counted
     regions = configuration.dealt_regions
     shares = sorted(each.utilisation for each in figures)
-    balance = {"static": "one table", "learnt": "balanced by learnt clocks, by the host"}.get(
+    balance = {"static": "one table", "runs": "a run for each",
+               "learnt": "balanced by learnt clocks, by the host"}.get(
         figures[0].policy, f"balanced by {counted}, by the {configuration.balancer}")
     span = (f"{100 * shares[0]:.0f} %" if len(shares) == 1 else
             f"{100 * shares[0]:.0f} to {100 * shares[-1]:.0f} %, "
@@ -90,6 +91,8 @@ def _objects(figures: ObjectFigures) -> str:
     made = [each.made for each in figures.golden]
     return (f"{figures.objects:,} of {figures.meshes:,} meshes, {sum(made):,} triangles made "
             f"in {len(made)} {figures.configuration.objects}"
+            + (f", {sum(map(sum, figures.golden_forwarded)):,} times passed on"
+               if figures.golden_forwarded else "")
             + (f", {figures.clipped:,} objects sent as triangles" if figures.clipped else "")
             + f"; {figures.words.total:,} words on the host link, {figures.words.meshes:,} of them "
             f"meshes, instead of {figures.triangle_words:,}"

@@ -27,7 +27,7 @@ BEYOND: Mapping[str, Sequence[str]] = {
                "tests/machine/test_random_lists.py"),
     "hdl": ("tests/hdl/test_cycle_constants.py", "tests/hdl/test_machine.py",
             "tests/machine/test_random_lists.py", "tests/machine/test_frame_tags.py",
-            "tests/machine/test_interlace_in_squares.py",
+            "tests/machine/interlaces/test_interlace_in_squares.py",
             "tests/testbenches/engines/test_activity_record.py"),
     "testbenches": ("tests/testbenches",),
 }

@@ -1,4 +1,5 @@
-"""The example scenes, their triangles made in nodes, on cages of many sizes, against golden.
+"""The example scenes, their triangles made in nodes or at the controller, on cages of many sizes,
+against golden.
 
 On each cage one machine draws all orthographic examples in one run, with a host that
 pauses at random; every colour on the pins, every depth and every count is compared.
@@ -7,6 +8,7 @@ pauses at random; every colour on the pins, every depth and every count is compa
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import click
 
@@ -30,6 +32,8 @@ from cardcage.testbenches.frames.object_figures import object_figures
 from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.machine_options import SETUPS
 
+from .broadcast_rates import ways
+
 READ = [commands.command(opcode) for opcode in (Opcode.READ_DEPTH, Opcode.READ_COUNTERS)]
 
 
@@ -40,10 +44,11 @@ def examples(size: int) -> dict[str, DisplayList]:
             if file is not None and file.orthographic}
 
 
-def differences(cards: str, lists: dict[str, DisplayList], seed: int) -> tuple[int, int, list[str]]:
+def differences(cards: str, lists: dict[str, DisplayList], seed: int, **fields: Any
+                ) -> tuple[int, int, list[str]]:
     """Pixels compared, clocks simulated, and a line for each thing that is not golden's."""
-    configuration = plan(list(lists.values()), cards=cards, packet=1, objects="nodes",
-                         clocks_per_pixel=2, **SETUPS["small"]).configuration
+    configuration = plan(list(lists.values()), cards=cards, packet=1, clocks_per_pixel=2,
+                         **SETUPS["small"], **fields).configuration
     words = [word for listed in lists.values()
              for word in [*frame_commands(configuration, listed), *READ]]
     triangles = sum(listed.triangles for listed in lists.values())
@@ -69,16 +74,22 @@ def differences(cards: str, lists: dict[str, DisplayList], seed: int) -> tuple[i
 @click.command()
 @click.option("--nodes", default="1,2,3,4,8,16", show_default=True)
 @click.option("--merge", default="CT", show_default=True, help="Kinds of merge cards.")
+@click.option("--broadcast", is_flag=True, help="In place of nodes, elements of one cage to which "
+              "the controller sends the triangles, however they share the picture.")
 @click.option("--size", type=click.IntRange(8, 512), default=32, show_default=True)
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True)
-def main(nodes: str, merge: str, size: int, seed: int) -> None:
-    """Objects made in nodes, against golden."""
+def main(nodes: str, merge: str, broadcast: bool, size: int, seed: int) -> None:
+    """Objects made in nodes or at the controller, against golden."""
     lists, wrong = examples(size), 0
     for count in map(int, nodes.split(",")):
-        for card in merge:
-            cards, began = f"{count}x(PMM{card})", time.perf_counter()
-            pixels, cycles, found = differences(cards, lists, seed)
-            click.echo(f"{cards}: {len(lists)} scenes, {pixels:,} pixels, {cycles:,} clocks, "
+        cages = {f"{count}x(PMM{card})": {"objects": "nodes"} for card in merge}
+        if broadcast:
+            cages = {f"{count}x(PM), {way}": fields | {"objects": "controller"}
+                     for way, fields in ways(count, size).items()}
+        for called, fields in cages.items():
+            began = time.perf_counter()
+            pixels, cycles, found = differences(called.partition(",")[0], lists, seed, **fields)
+            click.echo(f"{called}: {len(lists)} scenes, {pixels:,} pixels, {cycles:,} clocks, "
                        f"{len(found)} differences, {time.perf_counter() - began:.0f} s")
             for line in found:
                 click.echo(f"  {line}")

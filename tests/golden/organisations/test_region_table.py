@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
+from cardcage.golden.organisations.region_table import (
+    packed_table,
+    runs_table,
+    slots_of,
+    static_table,
+)
 from cardcage.golden.specification.errors import InputError
 
 
@@ -46,6 +51,15 @@ def test_slots_count_lower_regions_of_the_same_element():
     assert slots_of(table).tolist() == [0, 0, 1, 2, 0, 1]
     assert static_table(7, 3).tolist() == [0, 1, 2, 0, 1, 2, 0]
     assert slots_of(static_table(7, 3)).tolist() == [0, 0, 0, 1, 1, 1, 2]
+
+
+@pytest.mark.parametrize("elements", [1, 2, 3, 4, 7, 8, 16])
+@pytest.mark.parametrize("regions", [1, 4, 12, 64, 65])
+def test_runs_are_as_even_as_can_be(regions, elements):
+    table = runs_table(regions, elements).tolist()
+    assert table == [element for element in range(elements) for region in range(
+        element * regions // elements, (element + 1) * regions // elements)]
+    assert max(map(table.count, table)) == -(-regions // elements)
 
 
 @pytest.mark.parametrize(("counts", "elements", "slots", "message"), [

@@ -41,6 +41,16 @@ def test_diagonal_units():
     np.testing.assert_array_equal(Interlace(2, 16, 16, diagonal=True).tile, tile)
 
 
+def test_unit_numbers_in_lines():
+    (rows,) = [rows for header, rows in TABLES.items() if "lines in turn, each" in header]
+    assert len(rows) == 4
+    for row in rows:
+        units, share, documented = row.values()
+        interlace = Interlace(int(units).bit_length() - 1, 64, 64, lines=True,
+                              share_bits=int(share).bit_length() - 1)
+        assert documented.split() == [f"{axis}{bit}" for axis, bit in interlace.bit_order]
+
+
 def test_unit_numbers_in_squares():
     (rows,) = [rows for header, rows in TABLES.items() if header[:2] == ("total units", "side")]
     assert len(rows) == 4

@@ -22,6 +22,8 @@ OBJECTS = {"setup": "hardware", "mesh_triangles": 8, "meshes": 3}
     ({"objects": "controller"}, r"^objects: PMCPMC has nodes, .*; take nodes, or"),
     ({"objects": "elements"}, r"^objects: PMCPMC has nodes, .*; take nodes, or"),
     ({"objects": "elements", "cards": "2x(PM)"}, "^objects: .*; give regions as well"),
+    ({"objects": "elements", "cards": "2x(PM)", "regions": (4, 1)},
+     "^balance: clocks deals regions out anew, .*; take static$"),
     ({"mesh_triangles": 3, "meshes": 0}, "^mesh_triangles: is for .*; give objects as well"),
     ({"mesh_triangles": 0}, "^meshes: is for .*; give objects as well"),
 ])
@@ -38,9 +40,10 @@ def test_what_follows():
     assert not broadcast.controller_sets_up and broadcast.order_bits == 0
     # Objects come in any order: their number is kept beside the depth.
     forwarding = MachineConfiguration("2x(PM)", **SIZE, **OBJECTS, objects="elements",
-                                      regions=(4, 1))
+                                      regions=(4, 1), balance="static")
     assert (forwarding.order_bits, forwarding.round_bits, forwarding.rank_bits) == (16, 16, 40)
-    assert commands.object_layout(forwarding)["round"] == 16
+    layout = commands.object_layout(forwarding)
+    assert (layout["round"], layout["element"]) == (16, 2) and "node" not in layout
     assert MachineConfiguration("2x(PM)", **SIZE, setup="hardware").controller_sets_up
 
 

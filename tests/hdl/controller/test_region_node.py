@@ -9,7 +9,7 @@ from hdl_bench.pictures import small_machine
 from hdl_bench.region_cage import MACHINES, RegionRun, machine, placed
 from hdl_bench.region_tables import Tables, region_word, table_words
 
-from cardcage.golden.organisations.region_table import static_table
+from cardcage.golden.organisations.region_table import runs_table, static_table
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.hdl.backplane.words import Operation
@@ -130,6 +130,24 @@ def test_boot(name):
     [began] = run.units.initialised
     assert dict(run.responses)[ResponseKind.BOOTED] == began + max(
         2, configuration.dealt_regions.count + 2)
+
+
+@pytest.mark.parametrize("elements", [None, 1])
+@pytest.mark.parametrize(("name", "cards"), [
+    ("three", "3x(PMM)"), ("four, full", "8x(PM)"), ("one slot", "5x(PM)"), ("a row", "3x(PMM)"),
+    ("one element", "PMM"), ("one region", "2x(PMM)")])
+def test_boot_of_elements_that_pass_objects_on(name, cards, elements):
+    """Each has a run of regions, some none, however many there are; no later table is heard."""
+    configuration = machine(name, cards=cards, slots=0, objects="elements", mesh_triangles=4,
+                            meshes=2, setup="hardware", balance="static", order_bits=2)
+    if elements is None or elements * configuration.slots < configuration.dealt_regions.count:
+        elements = configuration.processing_elements
+    run = RegionRun(configuration, [region_word(configuration, 0, 0), START, END], elements + 6,
+                    elements=elements)
+    booted = run.clock_of(ResponseKind.BOOTED)
+    runs = placed(runs_table(configuration.dealt_regions.count, elements))
+    assert set(run.lines.drawn[booted:]) == {runs}
+    assert run.answers[0] == (ResponseKind.ERROR, Fault.UNKNOWN_COMMAND)
 
 
 @pytest.mark.parametrize("name", MACHINES)

@@ -26,6 +26,7 @@ MACHINES = {
 
 def machine(name, **changes):
     cards, regions, fields = MACHINES[name]
+    cards = changes.pop("cards", cards)
     return small_machine(cards, regions=regions, **{"width": 8, "height": 8} | fields | changes)
 
 

@@ -8,6 +8,7 @@ import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, compiled, run
 from object_bench.objects import object_machine, random_objects
 
+from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_controller
 from cardcage.golden.objects.object_words import frame_words
 from cardcage.golden.reference import exact
@@ -15,6 +16,7 @@ from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.frames.setup_timing import setup_timing
 
 #: Machines that are compiled once for all tests.
 MODELS = {
@@ -85,6 +87,22 @@ def test_frames_of_objects(name, stall_seed):
         assert (simulation.made, simulation.dropped) == ([counted[0]], [counted[1]])
     assert made_at_controller(configuration, second).sent == second.triangles > 0
     assert min(made_at_controller(configuration, first).made, counted[1]) > 10
+
+
+@pytest.mark.parametrize("name", ["squares", "lines", "three strips"])
+def test_clocks_are_predicted(name):
+    """From the first object's command until all is drawn, with clipped objects among the others."""
+    configuration = machine(name)
+    listed = objects(configuration, 60, seed=7).display_list()
+    words = frame_commands(configuration, listed)
+    answered = run(configuration, words, compiled())
+    opcodes = [commands.opcode_of(word) for word in words]
+    start = opcodes.index(Opcode.FRAME_START)
+    [drawn] = [value for kind, value, _ in answered.responses if kind == ResponseKind.FRAME_DRAWN]
+    clocks = drawn - int(answered.accepted[start + 1] - answered.accepted[start])
+    predicted = predict_cycles(configuration, listed, setup=setup_timing(configuration))
+    # The end of the frame is taken, and all is found done, some clocks later.
+    assert clocks == pytest.approx(predicted.cycles, rel=0.01, abs=10)
 
 
 @pytest.mark.parametrize("name", ["lines", "three strips"])

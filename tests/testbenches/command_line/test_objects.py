@@ -106,3 +106,14 @@ def test_which_cages_of_a_comparison_make_triangles(cage, objects, made):
     assert (options.objects, options.setup) == (made, "fast")
     assert options.meshes == (4 if made else None)
     assert Cage.named(cage, retained=True).options(MachineOptions(objects=objects)).objects is None
+
+
+def test_what_the_controller_makes_is_reported(tmp_path):
+    rendering = render("some.scene", out=tmp_path / "out", cards="2x(PM)", size=(8, 6), lines=True,
+                       objects="controller", setup="small", shading="flat")
+    assert rendering.comparison.equal and not rendering.warnings
+    facts = json.loads((tmp_path / "out" / "report.json").read_text())["objects"]
+    [place] = facts["per_place"]
+    assert facts["equal"] and facts["place"] == "controller"
+    assert place["made"] == place["golden_made"] == rendering.objects.made[0] > 30
+    assert "Made in controller" in (tmp_path / "out" / "report.html").read_text()

@@ -24,7 +24,7 @@ SMALL = MachineConfiguration(cards="2x(PMM)", width=8, height=8, sub_bits=2, dep
 PROVED = [name for name in COMPONENTS if name not in (
     "processing_element", "direct_merge", "direct_element", "crossbar", "frame_unit",
     "one_port_depth_test", "balancer", "merge_sorter", "large_visits", "region_visits",
-    "region_spans",
+    "region_spans", "forwarding_element", "element_gate", "object_forwarder",
     "edge_setup", "plane_setup", "triangle_outline", "triangle_setup", "result_queue")]
 
 FLAT = """

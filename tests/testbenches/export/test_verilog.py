@@ -74,6 +74,9 @@ SMALLEST = [
     {"cards": "PMMMM", "width": 8, "height": 8, "words": 1, "shading": "flat", "fraction_bits": 0},
     {"cards": "PMPM", "width": 16, "height": 16, "block": 4, "setup": "hardware",
      "setup_interval": 256, "shading": "flat"},
+    {"cards": "2x(PM)", "width": 8, "height": 8, "lines": True, "setup": "hardware",
+     "setup_interval": 256, "shading": "flat", "objects": "controller", "meshes": 1,
+     "mesh_triangles": 1},
 ]
 
 

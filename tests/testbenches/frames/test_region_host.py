@@ -8,7 +8,12 @@ import pytest
 
 from cardcage.golden.balancing.learnt_counts import learnt_counts
 from cardcage.golden.organisations.organisation_of import organisation_of
-from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
+from cardcage.golden.organisations.region_table import (
+    packed_table,
+    runs_table,
+    slots_of,
+    static_table,
+)
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind, opcode_of, unpack
@@ -16,6 +21,7 @@ from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.frames.conversation import owed_to, responses_owed
 from cardcage.testbenches.frames.frame_job import frame_commands, frame_job
+from cardcage.testbenches.frames.region_figures import RegionTables, sent_table
 from cardcage.testbenches.frames.region_host import (
     RegionHost,
     of_regions,
@@ -78,6 +84,22 @@ def test_a_host_that_sends_no_table(fields):
     host = RegionHost(MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), slots=8, **fields))
     host.counted(np.arange(24))
     assert host.commands() == []
+
+
+def test_a_host_that_gives_each_element_one_run():
+    """It says so before the first picture, and never again."""
+    machine = MachineConfiguration("3x(PM)", 20, 14, regions=(5, 4), balance="static")
+    host = RegionHost(machine, policy="runs")
+    assert host.table.tolist() == runs_table(20, 3).tolist()
+    assert read(machine, host.commands())[1] == host.table.tolist()
+    host.counted(np.arange(60))
+    assert host.commands() == []
+    with pytest.raises(InputError, match=r"^balance: runs is for machines that count static"):
+        RegionHost(MACHINE, policy="runs")
+    listed = make_display_list("random:n=12,size=7,seed=1", width=20, height=14).display_list
+    tables = RegionTables(machine, [listed] * 2, policy="runs")
+    assert tables.sent(0).tolist() == host.table.tolist() and tables.sent(1) is None
+    assert sent_table(machine) is None
 
 
 def test_a_machine_that_makes_its_tables_of_counts_as_they_are():

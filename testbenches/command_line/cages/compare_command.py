@@ -9,20 +9,20 @@ from typing import Any
 
 import click
 
-from ...golden.specification.card_order import MAXIMUM_NODES
-from ..comparison.compare_cages import (
+from ....golden.specification.card_order import MAXIMUM_NODES
+from ...comparison.compare_cages import (
     DEFAULT_SIMULATE,
     compare_cages,
     default_cards,
     expected_steps,
 )
-from ..comparison.comparison_facts import comparison_facts
-from ..comparison.comparison_table import comparison_table, comparison_text
-from ..engines.choose_engine import AUTO, ENGINES
-from ..render import DEFAULT_SCENE
-from ..support.progress import step_bar
-from .command_group import EXIT_DIFFERENT, warn
-from .command_options import Several, machine_options_of_cages, sequence_options
+from ...comparison.comparison_facts import comparison_facts
+from ...comparison.comparison_table import comparison_table, comparison_text
+from ...engines.choose_engine import AUTO, ENGINES
+from ...render import DEFAULT_SCENE
+from ...support.progress import step_bar
+from ..command_group import EXIT_DIFFERENT, warn
+from ..command_options import Several, machine_options_of_cages, sequence_options
 
 
 @click.command(name="compare")

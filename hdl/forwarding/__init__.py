@@ -1,0 +1,1 @@
+"""Objects that processing elements pass on to those who have regions that the objects meet."""

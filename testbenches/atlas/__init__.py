@@ -1,0 +1,1 @@
+"""All machines side by side: which organisation is fastest, or smallest, for which scene."""

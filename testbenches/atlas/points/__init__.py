@@ -1,0 +1,1 @@
+"""What one machine costs for one scene: by model, or simulated."""

@@ -1,0 +1,99 @@
+"""How large a machine's logic is, by a fit to boards that were counted.
+
+yosys takes seconds for each board of each machine.  So ``testbenches.studies.sizes.board_cells``
+has it count every kind of board once at several formats, from narrow words to wide ones, and here
+a board is as large as the straight line says that lies nearest to these, along the bits of a
+triangle as it is broadcast: its edges and interpolants are what registers, adders and multipliers
+of an element are as wide as.  A direct merge, a crossbar, grows with elements times units instead.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from functools import lru_cache
+from importlib import resources
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....golden.planning.machine_plan import triangle_bits
+from ....golden.specification.card_order import CARD_MODULES, DIRECT_MERGE
+from ....golden.specification.configuration import MachineConfiguration
+
+#: What was counted, in ``testbenches/data``.
+COUNTED = "board_cells.json"
+
+#: Boards whose size depends on how many ports memory units have.
+OF_PORTS = ("processing_element", "memory_unit")
+
+_CROSSBAR = CARD_MODULES[DIRECT_MERGE]
+
+
+class Kind(NamedTuple):
+    """Boards of a kind are as large but for the width of their words."""
+
+    board: str
+    merge: str | None
+    regions: bool
+    retained: bool
+    ports: int
+
+
+def board_kind(board: str, *, merge: str | None, regions: bool, retained: bool, ports: int) -> Kind:
+    """A list is in the merge card that ends a node, before a direct merge in the element."""
+    home = "processing_element" if merge == DIRECT_MERGE else CARD_MODULES.get(merge or "")
+    return Kind(board, merge, regions, retained and board == home,
+                ports if board in OF_PORTS else 1)
+
+
+def cells_of_cage(configuration: MachineConfiguration) -> int:
+    """Flip-flops, gates of one bit and partial products of multipliers, of all boards; memory is
+    ``memory_bits``'s."""
+    letters = Counter(configuration.cards)
+    boards = {"central_broadcast_controller": 1, "video_scan_generator": 1} | {
+        CARD_MODULES[letter]: number for letter, number in letters.items()}
+    return sum(number * _cells(configuration, board) for board, number in boards.items())
+
+
+def _cells(configuration: MachineConfiguration, board: str) -> int:
+    kind = board_kind(board, merge=configuration.merge, regions=configuration.regions is not None,
+                      retained=configuration.list_words > 0, ports=configuration.memory_ports)
+    size = board_size(board, triangle_bits(configuration),
+                      configuration.processing_elements * configuration.units)
+    return cells_of_board(kind, size)
+
+
+def cells_of_board(kind: Kind, size: int) -> int:
+    """On the line of its kind; ``size`` is that of ``board_size``."""
+    base, slope = _lines()[kind]
+    return max(1, round(base + slope * size))
+
+
+def board_size(board: str, bits: int, crossings: int) -> int:
+    """What the size of a board is a line along."""
+    return crossings if board == _CROSSBAR else bits
+
+
+@lru_cache(maxsize=1)
+def counted() -> list[dict[str, Any]]:
+    """The boards that were counted."""
+    text = (resources.files(__package__) / ".." / ".." / "data" / COUNTED).read_text("utf-8")
+    return list(json.loads(text))
+
+
+@lru_cache(maxsize=1)
+def _lines() -> dict[Kind, tuple[float, float]]:
+    """Of each kind the line nearest to what was counted: cells of nothing, and for each more."""
+    points: dict[Kind, list[tuple[float, float]]] = {}
+    for each in counted():
+        kind = board_kind(each["board"], merge=each["merge"], regions=each["regions"],
+                          retained=each["retained"], ports=each["memory_ports"])
+        size = board_size(each["board"], each["triangle_bits"], each["elements"] * each["units"])
+        points.setdefault(kind, []).append((float(size), float(each["cells"])))
+    lines = {}
+    for kind, some in points.items():
+        sizes, cells = np.array(some).T
+        slope, base = np.polyfit(sizes, cells, 1) if len(set(sizes)) > 1 else (0.0, cells.mean())
+        lines[kind] = float(base), float(slope)
+    return lines

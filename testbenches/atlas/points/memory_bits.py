@@ -1,0 +1,105 @@
+"""The bits of a machine's memories, by its configuration alone.
+
+``comparison.cage_memory`` counts them in the Verilog, which takes seconds for each machine.  Here
+pictures, lists, maps and frame units are exact; queues, a few per cent of the rest, are counted by
+what is in them, some bits off.  A test holds the sum to the Verilog of every kind of cage.
+"""
+
+from __future__ import annotations
+
+from ....golden.planning.machine_plan import triangle_bits
+from ....golden.specification.card_order import MEMORY_UNIT, TREE_MERGE
+from ....golden.specification.configuration import MachineConfiguration
+from ....golden.specification.ranges import COLOR_BITS
+
+#: Bits of a word of a map of what was drawn, and of its summary.
+MAP_WORD = 64
+
+#: An element knows that much more of a waiting triangle: where it begins in its lattice.
+KNOWN_BITS = 15
+
+#: Spans that wait between walker and fragments, and their bits beside the ends.
+SPANS, SPAN_BITS = 16, 28
+
+#: Accesses that wait before a memory of one port, and their bits beside a pixel.
+ACCESSES, ACCESS_BITS = 15, 13
+
+#: Places of a queue of a crossbar.
+CROSSBAR_PLACES = 2
+
+
+def memory_bits(configuration: MachineConfiguration) -> dict[str, int]:
+    """What for → bits, of all boards: ``pictures``, ``lists``, ``maps``, ``frame_units``,
+    ``queues``, ``tables``."""
+    units = configuration.cards.count(MEMORY_UNIT)
+    return {
+        "pictures": units * configuration.words * word_bits(configuration),
+        "lists": configuration.nodes * configuration.list_words * _kept_bits(configuration),
+        "maps": units * _map_bits(configuration),
+        "frame_units": _frame_bits(configuration),
+        "queues": _queue_bits(configuration, units),
+        "tables": _table_bits(configuration),
+    }
+
+
+def word_bits(configuration: MachineConfiguration) -> int:
+    """Of a word of a memory unit: depth and two colours, or two pictures of depth and colour, each
+    part with its tag.  Of one port all parts have the width of the widest."""
+    tag, rank = configuration.tag_bits, configuration.rank_bits
+    parts = ([rank + COLOR_BITS + tag] * 2 if configuration.keeps_two_depths
+             else [rank + tag, COLOR_BITS + tag, COLOR_BITS + tag])
+    return sum(parts) if configuration.memory_ports == 2 else len(parts) * max(parts)
+
+
+def _kept_bits(configuration: MachineConfiguration) -> int:
+    """Of a triangle in its node, which needs no number of it any more."""
+    return triangle_bits(configuration) - configuration.node_bits
+
+
+def _map_bits(configuration: MachineConfiguration) -> int:
+    """Of a unit's maps of what was drawn; two where one picture merges while another is drawn."""
+    if not (configuration.sends_drawn or configuration.snoops):
+        return 0
+    words = -(-configuration.words // MAP_WORD)
+    one = (words + -(-words // MAP_WORD)) * MAP_WORD
+    return one * (2 if configuration.snoops else 1)
+
+
+def _frame_bits(configuration: MachineConfiguration) -> int:
+    """Two colours, and no depth."""
+    if not configuration.snoops:
+        return 0
+    one = configuration.frame.words * (COLOR_BITS + configuration.tag_bits)
+    return 2 * one * configuration.frame_units
+
+
+def _queue_bits(configuration: MachineConfiguration, units: int) -> int:
+    elements = configuration.processing_elements
+    waiting = max(configuration.fifo_depth, 3) - 1
+    spans = SPANS * (configuration.x_bits + configuration.y_bits + SPAN_BITS)
+    found = elements * (waiting * (_kept_bits(configuration) + KNOWN_BITS) + spans)
+    pixel = configuration.rank_bits + COLOR_BITS
+    if configuration.memory_ports == 1:
+        found += units * ACCESSES * (pixel + ACCESS_BITS)
+    if configuration.merges_directly:
+        queues = 1 if configuration.queue == "element" else units
+        found += elements * queues * CROSSBAR_PLACES * 4 * (pixel + configuration.address_bits)
+    if configuration.sends_drawn or configuration.snoops:
+        sent = pixel + configuration.address_bits
+        found += units * (2 * configuration.address_bits + 3 * sent)
+        if configuration.merge == TREE_MERGE:
+            found += configuration.nodes * 2 * (sent + configuration.id_bits)
+    return found
+
+
+def _table_bits(configuration: MachineConfiguration) -> int:
+    """Where regions are dealt out: who draws each, for two pictures, in every element and in the
+    scan generator; and the counts."""
+    if configuration.regions is None:
+        return 0
+    regions = configuration.dealt_regions.count
+    elements = configuration.processing_elements
+    slot = configuration.table_bits + 1
+    shown = 2 * regions * (configuration.element_bits + slot)
+    counts = configuration.slots * 32 * 2 if configuration.balance != "static" else 0
+    return shown + elements * (2 * regions * (slot + 2) + counts)

@@ -1,0 +1,1 @@
+"""Many points, on all cores or many machines, each kept as it is found."""

@@ -1,0 +1,1 @@
+"""Commands that set several cages side by side."""

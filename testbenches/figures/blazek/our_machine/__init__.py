@@ -1,0 +1,1 @@
+"""Our machines: the same scenes with the same decompositions, in clocks."""

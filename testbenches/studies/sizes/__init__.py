@@ -1,0 +1,1 @@
+"""Figures that the atlas fits to."""
