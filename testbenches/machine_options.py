@@ -162,6 +162,9 @@ class MachineOptions:
         if self.retain and merge is None:
             raise InputError(f"--retain: {cards} has no merge card, and so no list memory; end its "
                              "nodes with merge cards, as in 2x(PMMC)")
+        if self.retain and self.objects is not None:
+            raise InputError("--retain: where the machine makes the triangles of objects it keeps "
+                             "meshes, not lists; leave one of the two out")
         if self.packet is not None and merge is None and self.objects != "elements":
             raise InputError(f"--packet: {cards} has no merge card, and so one node, which draws "
                              "all; leave it out, or end nodes with merge cards, as in 2x(PMMC)")
@@ -274,7 +277,13 @@ def option_words(options: MachineOptions) -> list[str]:
 
 
 def resolution_warnings(configuration: MachineConfiguration) -> tuple[str, ...]:
-    """A line where the memory cannot hold the highest resolution."""
+    """A line where the memory cannot hold the highest resolution, and where some processing element
+    has no part of it."""
+    regions = 0 if configuration.regions is None else configuration.dealt_regions.count
+    idle = configuration.processing_elements - regions
+    if regions and idle > 0:
+        return (f"{regions} regions for {configuration.processing_elements} processing elements: "
+                f"{idle} have nothing to draw",)
     width, height, *_ = organisation_of(configuration).resolution
     if (width, height) == (configuration.width, configuration.height):
         return ()

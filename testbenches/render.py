@@ -112,27 +112,29 @@ class RenderJob:
         if simulation.owned < simulation.total:
             warnings.append(f"{simulation.total - simulation.owned} of {simulation.total} memory "
                             "units belong to no processing element; their pixels are not compared")
-        if traffic is not None:  # no fault of the picture
+        wrong = []
+        if traffic is not None:
             nodes = node_figures(configuration, display_list, simulation, traffic)
-            warnings += [*count_differences(nodes), *unit_differences(simulation, traffic)]
+            wrong += [*count_differences(nodes), *unit_differences(simulation, traffic)]
         regions = region_figures(configuration, display_list, simulation,
                                  policy=self.options.policy(configuration))
         if regions is not None:
-            warnings += regions.differences
+            wrong += regions.differences
         objects = object_figures(configuration, display_list, simulation)
         if objects is not None:
-            warnings += objects.differences
+            wrong += objects.differences
         return Rendering(
             scene=self.scene,
             configuration=configuration,
             simulation=simulation,
             comparison=comparison,
             command_line=self.command_line,
-            warnings=tuple(warnings),
+            warnings=(*warnings, *wrong),
             wall_seconds=time.perf_counter() - self.began,
             traffic=traffic,
             regions=regions,
             objects=objects,
+            wrong_counts=tuple(wrong),
         )
 
 

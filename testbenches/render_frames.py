@@ -53,7 +53,8 @@ class FramesRendering:
 
     @property
     def equal(self) -> bool:
-        return all(frame.equal for frame in self.frames)
+        """Every picture and every count are as the golden model has them."""
+        return not self.shown.wrong_counts and all(frame.equal for frame in self.frames)
 
 
 @dataclass(frozen=True)
@@ -105,16 +106,16 @@ class FramesJob:
         shown = next((frame for frame in frames if not frame.equal), frames[-1])
         scene = self.lists.scene(shown.number)
         objects = object_figures(self.configuration, scene.display_list, shown.simulation)
+        wrong = (*(f"picture {frame.number}: {line}" for frame in frames
+                   if frame.regions is not None for line in frame.regions.differences),
+                 *([] if objects is None else objects.differences))
         return FramesRendering(frames, Rendering(
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,
-            warnings=(*self.warnings, *shown.simulation.notes, *(
-                f"picture {frame.number}: {line}" for frame in frames
-                if frame.regions is not None for line in frame.regions.differences),
-                *([] if objects is None else objects.differences)),
+            warnings=(*self.warnings, *shown.simulation.notes, *wrong),
             wall_seconds=time.perf_counter() - self.began, report=report,
             traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation),
-            regions=shown.regions, objects=objects), report)
+            regions=shown.regions, objects=objects, wrong_counts=wrong), report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

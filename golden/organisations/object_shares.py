@@ -15,8 +15,8 @@ from .shares import Shares, triangle_work
 
 Int64 = NDArray[np.int64]
 
-ONLY_OBJECTS = ("objects: nodes make triangles of orthographic scenes only, whose objects are "
-                "meshes that are moved; take a .scene without perspective, or leave objects out")
+ONLY_OBJECTS = ("objects: only a scene file without perspective has them, meshes that are moved; "
+                "take such a .scene (no display list keeps them), or leave objects out")
 
 
 @dataclass(frozen=True)

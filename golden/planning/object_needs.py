@@ -48,10 +48,14 @@ def fields_of_objects(needs: ObjectNeeds, rest: dict[str, Any]) -> dict[str, int
     planned = {"meshes": needs.meshes, "mesh_triangles": needs.triangles}
     if rest["objects"] == "elements":
         planned["order_bits"] = (needs.objects - 1).bit_length() if needs.objects else 0
-        if planned["order_bits"] > MAXIMUM_ORDER_BITS:
-            raise InputError(f"objects: elements that pass objects on tell "
-                             f"{1 << MAXIMUM_ORDER_BITS:,} apart, the scene has "
+        if needs.objects >= 1 << MAXIMUM_ORDER_BITS:  # nor can more be counted
+            raise InputError(f"objects: elements that pass objects on take "
+                             f"{(1 << MAXIMUM_ORDER_BITS) - 1:,} at most, the scene has "
                              f"{needs.objects:,}; have their triangles made at the controller")
+    for name in ("meshes", "mesh_triangles"):
+        if 0 < rest.get(name, 0) < planned[name]:
+            raise InputError(f"{name}: the scene needs {planned[name]:,}; give as many or more, "
+                             "or leave it out")
     return {name: number for name, number in planned.items() if not rest.get(name)}
 
 

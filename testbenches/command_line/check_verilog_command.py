@@ -26,7 +26,7 @@ from .command_group import EXIT_DIFFERENT
 
 @click.command(name="check-verilog")
 @click.argument("verilog", type=click.Path(path_type=Path), metavar="MACHINE.v")
-@click.argument("list_file", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz")
+@click.argument("list_file", type=click.Path(path_type=Path), metavar="DISPLAY_LIST.npz|SCENE")
 @click.option("--simulator", type=click.Choice(list(SIMULATORS)), default="verilator",
               show_default=True, help="Who simulates the Verilog.")
 @click.option("--configuration", type=click.Path(path_type=Path), metavar="MACHINE.json",
@@ -44,12 +44,13 @@ def check_verilog_command(
         stall_seed: int, no_stalls: bool, memory_seed: int, waveform: Path | None) -> None:
     """Draw DISPLAY_LIST with MACHINE.v in a Verilog simulator and check all that leaves it.
 
-    In place of a display list it may be a scene file (.scene): a machine that makes the triangles
-    of objects itself is sent these.
+    In place of a display list it may be a scene file (.scene) or a built-in scene: a machine that
+    makes the triangles of objects itself is sent these.
 
     \b
     Examples:
       cardcage check-verilog machine.v display_list.npz
+      cardcage check-verilog machine.v three_cubes --no-stalls
       cardcage check-verilog machine.v display_list.npz --simulator icarus
 
     \b
@@ -87,7 +88,7 @@ def check_verilog_command(
 
 def _display_list(machine: MachineConfiguration, path: Path) -> DisplayList:
     """Of a file; of a scene, as the machine can draw it."""
-    if path.suffix.lower() == DESCRIPTION_EXTENSION:
+    if path.suffix.lower() == DESCRIPTION_EXTENSION or not (path.suffix or path.exists()):
         return make_display_list(path, width=machine.width, height=machine.height,
                                  depth_bits=machine.depth_bits,
                                  shading=machine.shading).display_list

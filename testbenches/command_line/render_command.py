@@ -75,7 +75,7 @@ def render_command(command_line: str, /, scene: str, waveform: Path | None,
     for warning in rendering.warnings[len(job.warnings):]:
         warn(warning)
     click.echo(render_summary(rendering))
-    if not rendering.comparison.equal:
+    if not rendering.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)
 
 

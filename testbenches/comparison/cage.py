@@ -83,17 +83,23 @@ class Cage:
                        packet=None if merge is None and not self._forwards(asked, merge)
                        else asked.packet,
                        queue=asked.queue if merge == DIRECT_MERGE else None,
-                       **self._objects(asked, merge))
+                       **self._objects(asked))
+
+    def makes_triangles(self, asked: MachineOptions) -> bool:
+        """It has what is asked for, nodes, elements or a controller, to make the triangles of
+        objects."""
+        merge = merge_card(self.spelled or "")
+        return asked.objects is not None and not self.retained and {
+            "nodes": merge in NODE_ENDS, "controller": merge is None,
+            "elements": self._forwards(asked, merge)}[asked.objects]
 
     def _forwards(self, asked: MachineOptions, merge: str | None) -> bool:
         return asked.objects == "elements" and merge is None and self.regions is not None
 
-    def _objects(self, asked: MachineOptions, merge: str | None) -> dict[str, Any]:
+    def _objects(self, asked: MachineOptions) -> dict[str, Any]:
         """Where this cage makes the triangles of objects, as is asked; another kind of cage is sent
         triangles, which are set up by the same means."""
-        fits = asked.objects is not None and not self.retained and {
-            "nodes": merge in NODE_ENDS, "controller": merge is None,
-            "elements": self._forwards(asked, merge)}[asked.objects]
+        fits = self.makes_triangles(asked)
         fields: dict[str, Any] = {name: getattr(asked, name) if fits else None
                                   for name in ("objects", "mesh_triangles", "meshes")}
         setup = asked.setup or (None if asked.objects is None else "fast")
@@ -216,7 +222,8 @@ class CageJob:
              *unit_differences(simulation, golden), *_region_differences(frames.regions),
              *_object_differences(frames.objects),
              *_view_differences(views)],
-            [*resolution_warnings(configuration), *simulation.notes], views, frames.regions,
+            [*resolution_warnings(configuration), *_sent_triangles(self), *simulation.notes], views,
+            frames.regions,
             frames.objects, frames.link_words)
 
 
@@ -232,6 +239,13 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
         found.append(f"{wrong} of {len(scans)} scans, of frames of one scene, show another picture "
                      "than the last")
     return found
+
+
+def _sent_triangles(job: CageJob) -> list[str]:
+    place = job.options.objects
+    if place is None or job.cage.makes_triangles(job.options):
+        return []
+    return [f"triangles are sent to it: objects are made in {place}, which it has not"]
 
 
 def _region_differences(regions: RegionFigures | None) -> list[str]:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ...golden.objects.object_words import made_of_objects
 from ...golden.scene_display_list import SceneDisplayList, description_of
 from ...golden.specification.card_order import MAXIMUM_NODES, merge_card
 from ...golden.specification.errors import InputError
@@ -30,6 +31,9 @@ DEFAULT_CARDS = ("4x(PMM)", "4x(PMMC)", "4x(PMMT)")
 
 #: Cages of a sweep are simulated up to so many nodes.
 DEFAULT_SIMULATE = 4
+
+#: Where triangles of objects are made: a cage that makes them there.
+_MAKES_TRIANGLES = {"controller": "4x(PMM)", "nodes": "4x(PMMC)", "elements": "4x(PMM)/1x4"}
 
 #: Told before each step what is begun.
 Step = Callable[[str], None]
@@ -235,6 +239,17 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     return comparison
 
 
+def _check_objects(scene: SceneDisplayList, asked: MachineOptions, cages: Sequence[Cage]) -> None:
+    """``InputError`` where objects are asked for and the scene has none, or no cage makes any."""
+    if asked.objects is None:
+        return
+    made_of_objects(scene.display_list)
+    if not any(cage.makes_triangles(asked) for cage in cages):
+        raise InputError(f"objects: none of these cages makes triangles of objects in "
+                         f"{asked.objects}; give one that does, such as "
+                         f"{_MAKES_TRIANGLES[asked.objects]}, or leave objects out")
+
+
 def _compared(scene: str | Path, options: CompareOptions, command_line: str | None,
               step: Step | None) -> CageComparison:
     began = time.perf_counter()
@@ -243,6 +258,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     loaded = load_scene(scene, options.seen) if views is None else views.first
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
+    _check_objects(loaded, options.machine, cages)
     known = {(cage.spelled, cage.retained, cage.regions) for cage in cages}
     jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells, views=views)
                                       for cage in cages]

@@ -26,6 +26,7 @@ class Rendering:
                       one node, or nodes were not asked for their counts
     ``regions``       what regions cost that are dealt out; None where there are none
     ``objects``       what was made of objects; None where the machine takes none
+    ``wrong_counts``  a line for each count that is not the golden model's; all are ``warnings``
     """
 
     scene: SceneDisplayList
@@ -39,6 +40,12 @@ class Rendering:
     traffic: Traffic | None = None
     regions: RegionFigures | None = None
     objects: ObjectFigures | None = None
+    wrong_counts: tuple[str, ...] = ()
+
+    @property
+    def equal(self) -> bool:
+        """The picture and every count are as the golden model has them."""
+        return self.comparison.equal and not self.wrong_counts
 
     @property
     def fragments(self) -> int:

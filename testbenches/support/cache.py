@@ -44,11 +44,12 @@ def content_hash(parts: Iterable[str]) -> str:
 
 @cache
 def sources_hash(*folders: str) -> str:
-    """A name for all source text below folders of the package, such as ``"testbenches/export"``,
-    wherever in them it lies."""
+    """A name for all source text and data below folders of the package, such as
+    ``"testbenches/export"``, wherever in them it lies."""
     package = Path(__file__).parent.parent.parent
     sources = sorted(path for folder in folders
-                     for ending in ("*.py", "*.cpp") for path in (package / folder).rglob(ending))
+                     for ending in ("*.py", "*.cpp", "*.json")
+                     for path in (package / folder).rglob(ending))
     assert sources, folders
     return content_hash(path.read_text("utf-8") for path in sources)
 

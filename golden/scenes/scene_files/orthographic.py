@@ -40,7 +40,10 @@ def object_list(description: SceneDescription, placed: PlacedObjects, picture: P
     middle = [picture.width << picture.sub_bits - 1, picture.height << picture.sub_bits - 1,
               picture.depth_limit // 2]
     offset = _steps(places, pixels, depths, picture) + middle
-    objects = ObjectList(picture, background, tuple(meshes), placed.mesh, offset, placed.color)
+    # Of a mesh that faces away altogether there is nothing to place.
+    drawn = np.array([mesh.triangles > 0 for mesh in meshes], bool)[placed.mesh]
+    objects = ObjectList(picture, background, tuple(meshes), placed.mesh[drawn], offset[drawn],
+                         placed.color[drawn])
     return _with_overlay(_with_stars(objects, description.percent), description.overlay)
 
 

@@ -146,7 +146,7 @@ def test_objects_that_are_halved_stay_whole():
 def test_refusals(scene):
     teapot = make_display_list("teapot:tessellation=2", width=32, height=32).display_list
     for ask in (made_of_objects, organisation_of(machine()).shares):
-        with pytest.raises(InputError, match=r"^objects: nodes make triangles of orthographic"):
+        with pytest.raises(InputError, match=r"^objects: only a scene file without perspective"):
             ask(teapot)
     for field in ("meshes", "mesh_triangles"):
         with pytest.raises(InputError, match=f"^objects: {field} .*, the machine is built for 1"):

@@ -36,7 +36,7 @@ def run(*arguments):
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    (["teapot", *ELEMENTS, "--regions", "4x4"], "objects: nodes make triangles of orthographic"),
+    (["teapot", *ELEMENTS, "--regions", "4x4"], "objects: only a scene file without perspective"),
     (["some.scene", *ELEMENTS[:2]], "; give regions as well, or make triangles at the controller"),
     (["some.scene", *ELEMENTS, "--regions", "4x4", "--balance", "clocks"],
      "--balance: elements that pass objects on have a run of regions each, not clocks; take runs"),
@@ -57,7 +57,7 @@ def test_what_is_planned():
     [line] = [line for line in found["lines"] if line["item"] == "order bits"]
     assert line["value"] == "3" and "keeps the number of its own" in line["reason"]
     assert found["command"].endswith("--packet 2 --regions 1x8 --objects elements")
-    with pytest.raises(InputError, match=r"^objects: .* tell 65,536 apart, the scene has 65,537; "):
+    with pytest.raises(InputError, match=r"^objects: .* take 65,535 at most, the scene has 65"):
         fields_of_objects(ObjectNeeds(65_537, 1, 1, 1), {"objects": "elements"})
     listed = make_display_list("some.scene", width=16, height=16).display_list
     narrow = plan(listed, cards="2x(PM)", regions=(4, 4), balance="static", objects="elements",

@@ -34,20 +34,33 @@ def run(*arguments):
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    (["teapot", *NODES], "objects: nodes make triangles of orthographic scenes only"),
-    (["far.scene", *NODES], "objects: nodes make triangles of orthographic scenes only"),
+    (["teapot", *NODES], "objects: only a scene file without perspective"),
+    (["far.scene", *NODES], "objects: only a scene file without perspective"),
     (["some.scene", *NODES, "--setup", "host"], "setup: the host prepares no triangle of an obj"),
-    (["some.scene", *NODES, "--retain"], "list_words: a machine that makes triangles of objects"),
+    (["some.scene", *NODES, "--retain"], "--retain: where the machine makes the triangles"),
     (["some.scene", "--objects", "nodes"], "objects: PMMPMM has no nodes that keep meshes"),
     (["some.scene", "--objects", "nodes", "--cards", "PPDMM"], "objects: PPDMM has no nodes"),
     (["some.scene", "--objects", "controller", "--cards", "2x(PMC)"], "has nodes, which make"),
     (["some.scene", "--objects", "elements"], "objects: processing elements pass objects on to"),
     (["some.scene", "--objects", "host"], "'host' is not one of 'controller', 'nodes', 'elements'"),
     (["some.scene", "--meshes", 3], "meshes: is for machines that make triangles of objects"),
+    (["some.scene", *NODES, "--meshes", 1], "meshes: the scene needs 2; give as many or more"),
+    (["some.scene", *NODES, "--mesh-triangles", 3], "mesh_triangles: the scene needs "),
     (["some.scene", *NODES, "--meshes", 5000], "5000 is not in the range 1<=x<=4096"),
 ])
 def test_what_is_refused(words, said):
     assert said in refusal(run, "plan", *words)
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["teapot", "--cards", "2x(PMC)"], "objects: only a scene file without perspective"),
+    (["some.scene", "--cards", "2x(PM)"], "objects: none of these cages makes triangles of objects "
+     "in nodes; give one that does, such as 4x(PMMC)"),
+    (["some.scene", "--cards", "2x(PMC)", "--retain"], "objects: none of these cages"),
+])
+def test_nothing_to_compare(words, said):
+    """Before anything is simulated."""
+    assert said in refusal(run, "compare", *words, "--objects", "nodes")
 
 
 def test_what_is_planned():

@@ -189,3 +189,11 @@ def test_who_asks_to_survive_the_terminal_does(place):
               "print('alive')")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, "alive\n"), done.stderr
+
+
+def test_a_count_that_is_not_goldens(place, monkeypatch):
+    monkeypatch.setattr("cardcage.testbenches.render.count_differences",
+                        lambda nodes: ["node 1 sent 3 pixels, golden 4"])
+    done = CliRunner().invoke(main, ["render", SCENE, *TINY[2:], "--cards", "2x(PMC)"])
+    assert done.exit_code == 1, done.output
+    assert done.stderr == "cardcage: warning: node 1 sent 3 pixels, golden 4\n"

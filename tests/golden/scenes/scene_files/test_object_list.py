@@ -167,3 +167,11 @@ def test_a_replaced_description_is_drawn_too():
     plain = replace(file, description=replace(file.description, percent=0.0, overlay=None))
     fewer = plain.display_list(PictureFormat(32, 32)).triangles
     assert fewer == file.display_list(PictureFormat(32, 32)).triangles - 8 - 10
+
+
+def test_an_object_that_faces_away_altogether_is_none(tmp_path):
+    (tmp_path / "away.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 3 2\n")
+    file = scene(tmp_path, "obj mesh away.obj position -30,0,0\nobj cube scale 0.2").file
+    picture = PictureFormat(16, 16)
+    assert [len(file.display_list(picture, cull=cull).objects.mesh) for cull in (False, True)] == [
+        2, 1]
