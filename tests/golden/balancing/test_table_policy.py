@@ -17,7 +17,7 @@ def machine(**fields):
 @pytest.mark.parametrize(("fields", "default", "others"), [
     ({}, "learnt", {"clocks"}),
     ({"balance": "triangles"}, "triangles", set()),
-    ({"balance": "static"}, "static", set()),
+    ({"balance": "static"}, "static", {"runs"}),
     ({"balancer": "hardware"}, "clocks", set()),
     ({"balance": "triangles", "balancer": "hardware"}, "triangles", set())], ids=str)
 def test_what_a_machine_can_be_dealt_out_by(fields, default, others):
@@ -33,6 +33,6 @@ def test_what_a_machine_can_be_dealt_out_by(fields, default, others):
 
 
 def test_all_that_is_counted_is_a_policy():
-    assert {*get_args(Balance), "learnt"} == {*get_args(Policy)}
-    with pytest.raises(InputError, match="'even' is none of static, triangles, clocks, learnt"):
+    assert {*get_args(Balance), "learnt", "runs"} == {*get_args(Policy)}
+    with pytest.raises(InputError, match="'even' is none of static, triangles, clocks, learnt, runs"):
         check_policy(machine(), "even")
