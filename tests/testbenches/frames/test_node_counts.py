@@ -44,7 +44,8 @@ def test_every_count():
 
 
 def test_a_wrong_count_is_warned_of(tmp_path, monkeypatch):
-    """It is no fault of the picture."""
+    """It is no fault of the picture, which is said to be equal, and the status says that something
+    is not."""
     monkeypatch.chdir(tmp_path)
 
     def miscounted(*arguments, **options):
@@ -54,5 +55,5 @@ def test_a_wrong_count_is_warned_of(tmp_path, monkeypatch):
     monkeypatch.setattr("cardcage.testbenches.render.simulate_frame", miscounted)
     result = CliRunner().invoke(main, ["render", "random:n=12,size=5,seed=5", "--size", "8x8",
                                        "--cards", "2x(PMC)", "--engine", "pysim"])
-    assert result.exit_code == 0 and result.stdout.startswith("equal: 64 colours")
+    assert result.exit_code == 1 and result.stdout.startswith("equal: 64 colours")
     assert "node 0 sent 65 pixels, golden 64" in result.stderr
