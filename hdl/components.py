@@ -192,11 +192,9 @@ def _forwarding(make: Callable[..., wiring.Component],
     """What only machines have whose processing elements pass objects on."""
     if configuration.forwards_objects:
         return make(configuration=configuration)
-    plain = (replace(configuration, objects=None, meshes=0, mesh_triangles=0)
-             if configuration.objects is not None else configuration)
     return make(configuration=replace(
-        _with_regions(plain), balance="static", balancer="host", setup="hardware",
-        setup_interval=MAXIMUM_SETUP_INTERVAL, order_bits=6, objects="elements",
+        _with_regions(replace(configuration, **NO_OBJECTS)), balance="static", balancer="host",
+        setup="hardware", setup_interval=MAXIMUM_SETUP_INTERVAL, order_bits=6, objects="elements",
         mesh_triangles=256, meshes=16, words=0))
 
 

@@ -27,6 +27,7 @@ from .frames.rendering import Rendering
 from .frames.responses import MachineError, Simulation
 from .frames.setup_timing import setup_timing
 from .frames.simulation import simulate_frame
+from .frames.wrong_counts import wrong_counts
 from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
 from .support.atomic_output import atomic_file, atomic_folder, output_errors
 
@@ -118,11 +119,8 @@ class RenderJob:
             wrong += [*count_differences(nodes), *unit_differences(simulation, traffic)]
         regions = region_figures(configuration, display_list, simulation,
                                  policy=self.options.policy(configuration))
-        if regions is not None:
-            wrong += regions.differences
         objects = object_figures(configuration, display_list, simulation)
-        if objects is not None:
-            wrong += objects.differences
+        wrong += wrong_counts(regions, objects)
         return Rendering(
             scene=self.scene,
             configuration=configuration,

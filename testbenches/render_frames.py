@@ -16,6 +16,7 @@ from .frames.node_counts import golden_traffic
 from .frames.object_figures import object_figures
 from .frames.rendering import Rendering
 from .frames.setup_timing import setup_timing
+from .frames.wrong_counts import wrong_counts
 from .machine_options import resolution_warnings
 from .render import DEFAULT_SCENE, RenderOptions
 from .sequence.scene_frames import SceneFrames
@@ -107,8 +108,7 @@ class FramesJob:
         scene = self.lists.scene(shown.number)
         objects = object_figures(self.configuration, scene.display_list, shown.simulation)
         wrong = (*(f"picture {frame.number}: {line}" for frame in frames
-                   if frame.regions is not None for line in frame.regions.differences),
-                 *([] if objects is None else objects.differences))
+                   for line in wrong_counts(frame.regions)), *wrong_counts(objects))
         return FramesRendering(frames, Rendering(
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,

@@ -5,23 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..organisations.dealt_regions import DealtRegions
-from ..organisations.object_shares import ObjectShares
 from ..organisations.organisation_of import organisation_of
-from ..organisations.shares import Shares
-from ..reference.triangle_setup import outline
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from ..specification.sampling_grid import Grid
 from .forwarded_objects import ForwardedObjects
-from .made import Made
+from .made import Made, dropped_of_objects
 from .object_boxes import ObjectBoxes
-from .object_words import made_of_objects
-
-
-def source_shares(configuration: MachineConfiguration, display_list: DisplayList) -> Shares:
-    """How the host deals objects out to processing elements: as to nodes."""
-    return ObjectShares.of(display_list, configuration.processing_elements,
-                           configuration.packet).objects
+from .object_words import made_of_objects, source_shares
 
 
 def forwarded_objects(configuration: MachineConfiguration,
@@ -44,10 +34,7 @@ def made_at_elements(configuration: MachineConfiguration,
     listed = made_of_objects(display_list)
     drawn = forwarded_objects(configuration, listed).drawn
     counts, clipped = listed.counts, listed.objects.clipped
-    shifts = organisation_of(configuration).resolution.shifts
-    seen = outline(listed, Grid.of(listed, **shifts)).boxes.primitive
-    kept = np.bincount(listed.object_of[seen], minlength=len(counts))
-    lost = counts - kept
+    dropped = dropped_of_objects(configuration, listed)
     return [Made(objects=int(own.sum()), made=int(counts[own].sum()),
-                 sent=int(counts[clipped].sum()), dropped=int(lost[own | clipped].sum()))
+                 sent=int(counts[clipped].sum()), dropped=int(dropped[own | clipped].sum()))
             for own in drawn.T]

@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 
 from ..organisations.object_shares import ObjectShares
 from ..organisations.organisation_of import organisation_of
-from ..reference.triangle_setup import outline
 from ..specification.commands import command_words
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
-from ..specification.sampling_grid import Grid
 from .forwarding import made_at_elements
-from .made import Made
+from .made import Made, dropped_of_objects
 from .object_words import made_of_objects
 
 Int64 = NDArray[np.int64]
@@ -66,14 +64,12 @@ def _made(configuration: MachineConfiguration, display_list: DisplayList, place:
     """``place``: int64 (objects,), the one that makes each."""
     listed = made_of_objects(display_list)
     clipped = listed.objects.clipped
-    shifts = organisation_of(configuration).resolution.shifts
-    seen = outline(listed, Grid.of(listed, **shifts)).boxes.primitive
     triangles = np.bincount(place, listed.counts, places).astype(np.int64)
     sent = np.bincount(place[clipped], listed.counts[clipped], places).astype(np.int64)
-    drawn = np.bincount(place[listed.object_of[seen]], minlength=places)
+    dropped = np.bincount(place, dropped_of_objects(configuration, listed), places)
     whole = np.bincount(place[~clipped], minlength=places)
     return [Made(int(whole[each]), int(triangles[each] - sent[each]), int(sent[each]),
-                 int(triangles[each] - drawn[each])) for each in range(places)]
+                 int(dropped[each])) for each in range(places)]
 
 
 def link_words(configuration: MachineConfiguration, display_list: DisplayList) -> LinkWords:

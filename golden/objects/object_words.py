@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..organisations.object_shares import ONLY_OBJECTS, ObjectShares
 from ..organisations.organisation_of import organisation_of
+from ..organisations.shares import Shares
 from ..reference import triangle_words
 from ..scenes.scene_files.object_list import ObjectDisplayList, ObjectList
 from ..specification.commands import (
@@ -23,6 +24,7 @@ from ..specification.commands import (
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.errors import InputError
+from .object_boxes import mesh_box
 
 Int64 = NDArray[np.int64]
 Words = NDArray[np.object_]
@@ -33,6 +35,12 @@ def made_of_objects(display_list: DisplayList) -> ObjectDisplayList:
     if not isinstance(display_list, ObjectDisplayList):
         raise InputError(ONLY_OBJECTS)
     return display_list
+
+
+def source_shares(configuration: MachineConfiguration, display_list: DisplayList) -> Shares:
+    """How the host deals objects out to processing elements that pass them on: as to nodes."""
+    return ObjectShares.of(display_list, configuration.processing_elements,
+                           configuration.packet).objects
 
 
 def mesh_words(configuration: MachineConfiguration, objects: ObjectList) -> list[int]:
@@ -49,10 +57,7 @@ def mesh_words(configuration: MachineConfiguration, objects: ObjectList) -> list
                              "export a machine for this scene")
     words: list[int] = []
     for mesh in objects.meshes:
-        corners = mesh.position.reshape(-1, 2)
-        low, high = ((end(axis=0).tolist() if len(corners) else [0, 0])
-                     for end in (corners.min, corners.max))
-        box = dict(zip(("left", "top", "right", "bottom"), (*low, *high), strict=True))
+        box = dict(zip(("left", "top", "right", "bottom"), mesh_box(mesh), strict=True))
         words.append(int(Opcode.MESH) | pack(mesh_layout(configuration), box) << BODY_OFFSET)
         values = {f"vertex_{corner}": _vertex(mesh.position[:, corner], mesh.depth[:, corner],
                                               mesh.shade[:, corner]) for corner in range(3)}
@@ -114,8 +119,7 @@ def _shares(configuration: MachineConfiguration, listed: ObjectDisplayList
             raise InputError(f"objects: the pixels of the machine tell "
                              f"{1 << configuration.order_bits:,} apart, the scene has {count:,}: "
                              "export a machine for this scene")
-        dealt = ObjectShares.of(listed, configuration.processing_elements,
-                                configuration.packet).objects
+        dealt = source_shares(configuration, listed)
         return {"round": np.arange(count), "element": dealt.node}, dealt.host_place
     shares = organisation_of(configuration).shares(listed)
     if not isinstance(shares, ObjectShares):

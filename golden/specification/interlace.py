@@ -77,7 +77,7 @@ class Interlace:
     lines: bool = False
 
     def __post_init__(self) -> None:
-        most = min(self.unit_bits, self.unit_bits if self.lines else 2 * self.square_bits)
+        most = self.unit_bits if self.lines else min(self.unit_bits, 2 * self.square_bits)
         if not 0 <= self.share_bits <= most:
             raise ValueError(f"share_bits must be 0 to {most}, not {self.share_bits}")
         if self.skew and self.square_bits:

@@ -21,6 +21,7 @@ from ..frames.object_figures import object_figures
 from ..frames.region_figures import RegionTables
 from ..frames.responses import MachineError, Simulation
 from ..frames.simulation import simulate
+from ..frames.wrong_counts import wrong_counts
 from .command_group import EXIT_DIFFERENT
 
 
@@ -78,9 +79,8 @@ def check_verilog_command(
     except ToolMissingError as missing:
         raise InputError(str(missing)) from None
     comparison = compare(machine, display_list, simulation)
-    wrong = [] if tables is None else tables.figures(number, simulation).differences
-    objects = object_figures(machine, display_list, simulation)
-    wrong += [] if objects is None else objects.differences
+    wrong = wrong_counts(None if tables is None else tables.figures(number, simulation),
+                         object_figures(machine, display_list, simulation))
     click.echo(_summary(simulation, comparison, wrong))
     if wrong or not comparison.equal:
         click.get_current_context().exit(EXIT_DIFFERENT)

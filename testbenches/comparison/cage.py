@@ -26,6 +26,7 @@ from ..frames.node_counts import NodeFigures, count_differences, node_figures, u
 from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
+from ..frames.wrong_counts import wrong_counts
 from ..machine_options import MachineOptions, resolution_warnings
 from ..sequence.scene_frames import SceneFrames
 from .cage_memory import Memory, cells_of, memories_of
@@ -219,12 +220,10 @@ class CageJob:
             memories_of(configuration) if self.memories else [],
             cells_of(configuration) if self.cells else None,
             [*_picture_differences(comparison, frames), *count_differences(nodes),
-             *unit_differences(simulation, golden), *_region_differences(frames.regions),
-             *_object_differences(frames.objects),
-             *_view_differences(views)],
-            [*resolution_warnings(configuration), *_sent_triangles(self), *simulation.notes], views,
-            frames.regions,
-            frames.objects, frames.link_words)
+             *unit_differences(simulation, golden),
+             *wrong_counts(frames.regions, frames.objects), *_view_differences(views)],
+            [*resolution_warnings(configuration), *_sent_triangles(self), *simulation.notes],
+            views, frames.regions, frames.objects, frames.link_words)
 
 
 def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[str]:
@@ -246,14 +245,6 @@ def _sent_triangles(job: CageJob) -> list[str]:
     if place is None or job.cage.makes_triangles(job.options):
         return []
     return [f"triangles are sent to it: objects are made in {place}, which it has not"]
-
-
-def _region_differences(regions: RegionFigures | None) -> list[str]:
-    return [] if regions is None else regions.differences
-
-
-def _object_differences(objects: ObjectFigures | None) -> list[str]:
-    return [] if objects is None else objects.differences
 
 
 def _view_differences(views: Sequence[ViewFigures]) -> list[str]:

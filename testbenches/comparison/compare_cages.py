@@ -6,8 +6,6 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import partial
-from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +20,7 @@ from ..machine_options import MachineOptions, load_scene
 from ..render import DEFAULT_SCENE
 from ..sequence.scene_frames import SceneFrames
 from ..support.atomic_output import atomic_folder, output_errors
-from ..support.processes import cores, in_processes
+from ..support.processes import run_jobs
 from .cage import Cage, CageJob, CageRun, Refused
 from .node_sweep import Curve, Place, Point, PointJob, curves_of, places, time_of
 
@@ -264,11 +262,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
              for place in points]
-    step = step or (lambda doing: None)
-    doing = f"{len(jobs)} cages, {min(len(jobs), options.processes or cores())} at a time"
-    step(doing)
-    results: list[Any] = in_processes(methodcaller("run"), jobs, options.processes,
-                                      partial(step, doing))
+    results = run_jobs(jobs, "cages", options.processes, step or (lambda doing: None))
     drawn, found = results[:len(cages)], results[len(cages):]
     runs = [run for run in drawn if isinstance(run, CageRun)]
     refused = [each for each in [*drawn, *found] if isinstance(each, Refused)]

@@ -10,6 +10,7 @@ from ...golden.merging.cage import merge_cage
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ..frames.node_counts import count_differences, node_figures, unit_differences
+from ..frames.wrong_counts import wrong_counts
 from ..sequence.scene_frames import SceneFrames
 from ..sequence.sequence_run import SequenceFrame, simulate_sequence
 
@@ -58,9 +59,8 @@ def _figures(configuration: MachineConfiguration, display_list: DisplayList,
     golden = merge_cage(configuration, display_list)[1]
     nodes = node_figures(configuration, display_list, simulation, golden)
     differences = [] if frame.equal else ["the picture differs from the golden one"]
-    if frame.regions is not None:
-        differences += frame.regions.differences
-    differences += [*count_differences(nodes), *unit_differences(simulation, golden)]
+    differences += [*wrong_counts(frame.regions), *count_differences(nodes),
+                    *unit_differences(simulation, golden)]
     sent = nodes[:-1] if configuration.scans_rank else nodes  # not to the pins
     fragments = [node.fragments for node in nodes]
     draw, merged = simulation.draw_cycles, simulation.merge_cycles

@@ -5,12 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from operator import methodcaller
 from typing import Any
 
 from ..engines.choose_engine import AUTO, make_engine
-from ..support.processes import cores, in_processes
+from ..support.processes import run_jobs
 from .assignments.frame_times import MAP_SCENES, AssignmentTimes, TimesJob
 from .figure_scenes import FigureScene, Size, figure_scenes
 from .merge_costs import (
@@ -98,11 +96,7 @@ def redraw_cox_hanrahan(options: FiguresOptions, command_line: str | None = None
         make_engine(options.engine)  # one that cannot run here ends it before the work
     boards = board_figures(options.cells, step) if options.simulate else {}
     jobs = options.jobs()
-    doing = f"{len(jobs)} parts, {min(len(jobs), options.processes or cores())} at a time"
-    step(doing)
-    results: list[Any] = in_processes(methodcaller("run"), jobs, options.processes,
-                                      partial(step, doing))
-    done = list(zip(jobs, results, strict=True))
+    done = list(zip(jobs, run_jobs(jobs, "parts", options.processes, step), strict=True))
     merged = [(job, found) for job, found in done if isinstance(job, MergeJob)]
     traffic = [found for job, found in done if isinstance(job, TrafficJob)]
     points = [found for job, found in done if isinstance(job, PointJob)]

@@ -11,7 +11,9 @@ import traceback
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stdout, suppress
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import wait
+from operator import methodcaller
 from typing import Any, TypeVar
 
 from .interruption import Interrupted, interruptible, uninterrupted
@@ -75,6 +77,18 @@ def in_processes(function: Callable[[Argument], Result], arguments: Sequence[Arg
                 with process:  # which closes its output and waits for it
                     pass
     return [results[place] for place in range(len(arguments))]
+
+
+def run_jobs(jobs: Sequence[Any], kind: str, processes: int | None = None,
+             step: Callable[[str], None] = lambda doing: None) -> list[Any]:
+    """What each job's ``run`` returns, as ``in_processes`` has it.
+
+    ``kind``  what jobs are called where there are many
+    ``step``  is called as the work begins, and as each result is there, with what is being done
+    """
+    doing = f"{len(jobs)} {kind}, {min(len(jobs), processes or cores())} at a time"
+    step(doing)
+    return in_processes(methodcaller("run"), jobs, processes, partial(step, doing))
 
 
 def _told(result: Result, done: Callable[[], None]) -> Result:

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objects.forwarding import forwarded_objects, source_shares
-from ...objects.object_words import made_of_objects
+from ...objects.forwarding import forwarded_objects
+from ...objects.object_words import made_of_objects, source_shares
 from ...specification.configuration import MachineConfiguration
 from ...specification.display_list import DisplayList
 from ...specification.queues import OBJECTS_PASSING, OBJECTS_WAITING

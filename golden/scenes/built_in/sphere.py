@@ -30,6 +30,14 @@ def unit_sphere(depth: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         ],
         np.int64,
     )  # fmt: skip
+    return subdivided_sphere(vertices, faces, depth)
+
+
+def subdivided_sphere(
+    vertices: NDArray[np.float64], faces: NDArray[np.int64], depth: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A closed mesh with its vertices on the unit sphere, each face ``depth`` times made four, the
+    new vertices moved out to the sphere."""
     for _ in range(depth):
         pairs, faces = split_in_four(faces, len(vertices))
         new = normalised(vertices[pairs[:, 0]] + vertices[pairs[:, 1]])

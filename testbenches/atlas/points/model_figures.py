@@ -66,6 +66,7 @@ def of_any_precision(configuration: MachineConfiguration) -> MachineConfiguratio
 def model_figures(point: AtlasPoint, configuration: MachineConfiguration, work: Work) -> Figures:
     """All figures of a point; ``atlas.facts`` says what each is."""
     draw, merge = round(work.prediction.cycles), work.merge
+    memory = memory_bits(configuration)
     return {
         "machine": _machine(configuration),
         "triangles": point.scene.load().display_list.triangles,
@@ -75,8 +76,8 @@ def model_figures(point: AtlasPoint, configuration: MachineConfiguration, work: 
         "limit": limit(work.prediction, merge),
         "bounds": {name: round(bound) for name, bound in work.prediction.bounds.items()}
         | {"merge": merge},
-        "memory": memory_bits(configuration),
-        "memory_bits": sum(memory_bits(configuration).values()),
+        "memory": memory,
+        "memory_bits": sum(memory.values()),
         "cells": cells_of_cage(configuration),
         "traffic": traffic_figures(configuration, point, work),
         "error": precision_error(point.scene, configuration),

@@ -5,13 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
-from operator import methodcaller
 from typing import Any
 
 from ....golden.specification.errors import InputError
 from ...engines.choose_engine import AUTO, make_engine
-from ...support.processes import cores, in_processes
+from ...support.processes import run_jobs
 from .his_machine.sensitivity import Sensitivity, SensitivityJob, sensitivity_jobs
 from .his_machine.times import Times, TimesJob, times_jobs, times_of
 from .our_machine.clocks import Clocks, ClocksJob, clocks_jobs, clocks_of
@@ -75,11 +73,7 @@ def redraw_blazek(options: BlazekOptions, command_line: str | None = None,
     if options.simulate:
         make_engine(options.engine)  # one that cannot run here ends it before the work
     jobs = options.jobs()
-    doing = f"{len(jobs)} parts, {min(len(jobs), options.processes or cores())} at a time"
-    step(doing)
-    results: list[Any] = in_processes(methodcaller("run"), jobs, options.processes,
-                                      partial(step, doing))
-    done = list(zip(jobs, results, strict=True))
+    done = list(zip(jobs, run_jobs(jobs, "parts", options.processes, step), strict=True))
 
     def of(kind: type[Any]) -> tuple[list[Any], list[Any]]:
         own = [(job, found) for job, found in done if isinstance(job, kind)]

@@ -5,13 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from operator import methodcaller
 from typing import Any
 
 from ....golden.specification.errors import InputError
 from ...engines.choose_engine import AUTO, make_engine
-from ...support.processes import cores, in_processes
+from ...support.processes import run_jobs
 from .dealing.dealing_job import DealingJob
 from .dealing.model_dealing import ModelDealing, dealing_jobs, model_dealing
 from .dealing.models import FigureModel, Size, figure_models
@@ -94,11 +92,7 @@ def redraw_ellsworth(options: EllsworthOptions, command_line: str | None = None,
     if options.simulate:
         make_engine(options.engine)  # one that cannot run here ends it before the work
     jobs = options.jobs()
-    doing = f"{len(jobs)} parts, {min(len(jobs), options.processes or cores())} at a time"
-    step(doing)
-    results: list[Any] = in_processes(methodcaller("run"), jobs, options.processes,
-                                      partial(step, doing))
-    done = list(zip(jobs, results, strict=True))
+    done = list(zip(jobs, run_jobs(jobs, "parts", options.processes, step), strict=True))
     models = []
     for model in options.chosen():
         own = sorted(((job, found) for job, found in done

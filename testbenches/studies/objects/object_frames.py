@@ -30,6 +30,7 @@ from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.node_counts import count_differences, node_figures
 from cardcage.testbenches.frames.object_figures import object_figures
 from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.frames.wrong_counts import wrong_counts
 from cardcage.testbenches.machine_options import SETUPS
 
 from .broadcast_rates import ways
@@ -66,8 +67,7 @@ def differences(cards: str, lists: dict[str, DisplayList], seed: int, **fields: 
                          f"{compared.depths_different} depths differ")
         golden = merge_cage(configuration, listed)[1]
         found += count_differences(node_figures(configuration, listed, simulation, golden))
-        objects = object_figures(configuration, listed, simulation)
-        found += [] if objects is None else objects.differences
+        found += wrong_counts(object_figures(configuration, listed, simulation))
     return pixels, run.cycles, found
 
 

@@ -28,6 +28,7 @@ from cardcage.testbenches.frames.node_counts import count_differences, node_figu
 from cardcage.testbenches.frames.object_figures import object_figures
 from cardcage.testbenches.frames.setup_timing import setup_timing
 from cardcage.testbenches.frames.simulation import simulate_frame
+from cardcage.testbenches.frames.wrong_counts import wrong_counts
 from cardcage.testbenches.machine_options import SETUPS, SetupChoice
 from cardcage.testbenches.support.text_table import TextTable
 
@@ -71,8 +72,7 @@ def rates(configuration: MachineConfiguration, listed: DisplayList, *, simulate:
         simulation = simulate_frame(configuration, listed, engine="verilator")
         golden = merge_cage(configuration, listed)[1]
         counts = count_differences(node_figures(configuration, listed, simulation, golden))
-        objects = object_figures(configuration, listed, simulation)
-        counts += [] if objects is None else objects.differences
+        counts += wrong_counts(object_figures(configuration, listed, simulation))
         if counts or not compare(configuration, listed, simulation).equal:
             raise SystemExit(f"{configuration.cards}: the picture or a count differs: {counts}")
         found = simulation.draw_cycles

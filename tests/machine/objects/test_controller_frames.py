@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, compiled, run
 from object_bench.objects import object_machine, random_objects
+from object_bench.refused_objects import check_refused, refused_objects
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_controller
 from cardcage.golden.objects.object_words import frame_words
 from cardcage.golden.reference import exact
 from cardcage.golden.specification import commands
-from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.frames.setup_timing import setup_timing
@@ -111,27 +112,9 @@ def test_objects_that_are_refused(name):
     loaded; whole frames before and after."""
     configuration = machine(name)
     listed, *_ = lists(configuration)
-    clear, load, begin = (commands.command(opcode) for opcode in (
-        Opcode.CLEAR_LISTS, Opcode.MESH_TRIANGLE, Opcode.MESH))
-    meshes = configuration.meshes
-    mesh_7 = commands.command(Opcode.OBJECT, 7)
-    many = [clear, begin, *[load] * (configuration.mesh_triangles + 1)]
-    good = frame_commands(configuration, listed)
-    start, *drawing, end = redrawn(configuration, listed)
-    whole = [word for word in drawing if commands.opcode_of(word) == Opcode.OBJECT]
-    cases = [(good, []), ([start, mesh_7, *drawing, end], [Fault.NO_MESH]),
-             ([*many, start, *whole, end], [Fault.LIST_FULL] * len(whole)),
-             ([clear, *[begin] * (meshes + 1), start, mesh_7, end], [Fault.LIST_FULL]),
-             ([clear, load, begin, start, mesh_7, end], [Fault.NO_MESH]), (good, []),
-             ([start, end], [])]
+    again = redrawn(configuration, listed)
+    cases = [*refused_objects(configuration, frame_commands(configuration, listed), again),
+             ([again[0], again[-1]], [])]
     words = [word for own, _ in cases for word in own]
     answered = run(configuration, words, compiled(), extra=sum(len(some) for _, some in cases))
-    faults = [value for kind, value, _ in answered.responses if kind == ResponseKind.ERROR]
-    assert faults == [fault for _, some in cases for fault in some]
-    shown = [cycle for kind, _, cycle in answered.responses if kind == ResponseKind.FRAME_SHOWN]
-    pictures = [next(scan.picture for scan in answered.scans if scan.cycle > cycle)
-                for cycle in shown[:-1]]
-    for number in (1, 5):
-        np.testing.assert_array_equal(pictures[number], pictures[0])
-    for number in (2, 3, 4):
-        assert (pictures[number] == listed.background).all()
+    check_refused(answered, cases, listed.background)

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, check_merged, compiled, run
 from object_bench.objects import object_machine, random_objects
+from object_bench.refused_objects import check_refused, refused_objects
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_nodes
 from cardcage.golden.objects.object_words import frame_words
 from cardcage.golden.specification import commands
-from cardcage.golden.specification.commands import Fault, Opcode, ResponseKind
+from cardcage.golden.specification.commands import Opcode
 from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.frames.setup_timing import setup_timing
@@ -92,29 +93,11 @@ def test_objects_that_are_refused(name):
     loaded; whole frames before and after."""
     configuration = machine(name)
     listed, *_ = lists(configuration)
-    clear, load, begin = (commands.command(opcode) for opcode in (
-        Opcode.CLEAR_LISTS, Opcode.MESH_TRIANGLE, Opcode.MESH))
-    meshes = configuration.meshes
-    mesh_7 = commands.command(Opcode.OBJECT, 7)
-    many = [clear, begin, *[load] * (configuration.mesh_triangles + 1)]
-    good = frame_commands(configuration, listed)
-    start, *objects, end = redrawn(configuration, listed)
-    whole = [word for word in objects if commands.opcode_of(word) == Opcode.OBJECT]
-    cases = [(good, []), ([start, mesh_7, *objects, end], [Fault.NO_MESH]),
-             ([*many, start, *whole, end], [Fault.LIST_FULL] * len(whole)),
-             ([clear, *[begin] * (meshes + 1), start, mesh_7, end], [Fault.LIST_FULL]),
-             ([clear, load, begin, start, mesh_7, end], [Fault.NO_MESH]), (good, [])]
+    cases = refused_objects(configuration, frame_commands(configuration, listed),
+                            redrawn(configuration, listed))
     words = [*(word for own, _ in cases for word in own), READ_COUNTERS]
     answered = run(configuration, words, compiled(), extra=sum(len(some) for _, some in cases))
-    faults = [value for kind, value, _ in answered.responses if kind == ResponseKind.ERROR]
-    assert faults == [fault for _, some in cases for fault in some]
-    shown = [cycle for kind, _, cycle in answered.responses if kind == ResponseKind.FRAME_SHOWN]
-    pictures = [next(scan.picture for scan in answered.scans if scan.cycle > cycle)
-                for cycle in shown]
-    for number in (1, 5):
-        np.testing.assert_array_equal(pictures[number], pictures[0])
-    for number in (2, 3, 4):
-        assert (pictures[number] == listed.background).all()
+    check_refused(answered, cases, listed.background)
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .....golden.cycles.cycle_model import predict_cycles
 from .....golden.objects.making import link_words, triangle_link_words
+from .....golden.organisations.shares import Shares
 from .....golden.specification.card_order import TREE_MERGE
 from .....golden.specification.configuration import MachineConfiguration
 from ....frames.setup_timing import setup_timing
@@ -140,4 +141,4 @@ def words_on_link(decomposition: Decomposition, size: Size, seed: int, nodes: in
 def node_of_triangles(decomposition: Decomposition, nodes: int, spheres: int) -> Int64:
     """int64 (triangles,): packets of triangles or of objects, dealt out in turn."""
     packet = decomposition.packet * (TRIANGLES if decomposition.kind == "nodes" else 1)
-    return np.asarray(np.arange(spheres * TRIANGLES) // packet % nodes)
+    return Shares(nodes, spheres * TRIANGLES, packet).node

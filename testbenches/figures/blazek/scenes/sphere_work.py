@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .....golden.reference.coverage import Triangles, spans
-from .....golden.scenes.built_in.sphere import split_in_four
+from .....golden.scenes.built_in.sphere import subdivided_sphere
 from .....golden.scenes.mesh import normalised
 from .....golden.specification.display_list import DisplayList
 from .....golden.specification.sampling_grid import Grid
@@ -51,10 +51,7 @@ def sphere_polygons(cuts: int = CUTS) -> Float64:
     near = np.linalg.norm(vertices[:, None] - vertices[None], axis=2) < 1.1
     faces = np.array([(a, b, c) for a in range(12) for b in range(a + 1, 12)
                       for c in range(b + 1, 12) if near[a, b] and near[b, c] and near[a, c]])
-    for _ in range(cuts):
-        pairs, faces = split_in_four(faces, len(vertices))
-        vertices = np.concatenate([vertices,
-                                   normalised(vertices[pairs[:, 0]] + vertices[pairs[:, 1]])])
+    vertices, faces = subdivided_sphere(vertices, faces, cuts)
     return np.asarray(vertices[faces])
 
 
