@@ -51,6 +51,28 @@ def ending_large(listed: DisplayList) -> DisplayList:
     return listed
 
 
+def flat_bars(seed: int, n: int) -> DisplayList:
+    """Long and some rows thick: where they leave a high region many rows without a pixel follow,
+    while spans before these wait."""
+    random = np.random.default_rng(seed)
+    listed = scene(seed, n=n)
+    begin = random.integers(0, [10 * 256, 28 * 256], (n, 2))
+    end = np.stack([random.integers(30 * 256, 40 * 256, n),
+                    (begin[:, 1] + random.integers(-14 * 256, 14 * 256, n)).clip(0, 28 * 256)],
+                   axis=1)
+    listed.position[:] = np.stack([begin, end, end + np.array([0, 1300])], axis=1)
+    return listed
+
+
+def test_rows_without_a_pixel_behind_spans_that_wait():
+    listed = ending_large(flat_bars(19, 25))
+    configuration = wide_machine(listed, cards="2x(PMM)", memory_ports=2, fraction_bits=40,
+                                 regions=(10, 2), slots=10)
+    table = np.random.default_rng(19).permutation(static_table(20, 2))
+    predicted = predict_cycles(configuration, listed, table=table)
+    assert counted(configuration, listed, table) == predicted.cycles
+
+
 @pytest.mark.parametrize(("seed", "cards", "regions", "fifo"), [
     (1, "3x(PM)", (5, 7), 5), (2, "2x(PMM)", (10, 4), 16)])
 def test_the_machine_takes_the_predicted_clocks(seed, cards, regions, fifo):

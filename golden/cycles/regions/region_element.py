@@ -21,11 +21,12 @@ class TriangleCost:
     """A triangle that an element keeps.
 
     ``bands``   of its box, where that is large, else None: all its visits are known before
-    ``visits``  rows of each, and what it costs at the ports; None if nothing leaves the walker
+    ``visits``  rows of each; how many of these follow the last one that leaves the walker; and
+                what it costs at the ports, None if nothing leaves the walker
     """
 
     bands: Sequence[Band] | None
-    visits: Sequence[tuple[int, Any]]
+    visits: Sequence[tuple[int, int, Any]]
 
 
 class RegionElement:
@@ -49,11 +50,11 @@ class RegionElement:
         def walk(known: float) -> float:
             nonlocal taken
             taken = max(known, self._free)
-            rows, accesses = next(visits)
+            rows, following, accesses = next(visits)
             self._free = taken + rows
             if accesses is not None:
                 self._drawn = self._ports.take(taken, accesses)
-                self._free = max(self._free, self._drawn.walker - LOADED_AHEAD)
+                self._free = max(self._free, self._drawn.walker + following - LOADED_AHEAD)
             return taken
 
         if cost.bands is None:

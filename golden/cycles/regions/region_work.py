@@ -37,7 +37,10 @@ class RegionWork(NodeWork):
             for visit, cost in zip(leaving.tolist(), self._ports.costs(entries, spans),
                                    strict=True):
                 accesses[visit] = cost
-            visits = list(zip(spans.visit_rows.tolist(), accesses, strict=True))
+            following = np.zeros(len(spans.visit_rows), np.int64)
+            following[leaving] = entries.walk - 1 - entries.offset[entries.first[1:] - 1]
+            visits = list(zip(spans.visit_rows.tolist(), following.tolist(), accesses,
+                              strict=True))
             bands = boxes.bands(spans)
             work: list[list[ElementWork]] = [[] for _ in range(spans.end - spans.begin)]
             ends = np.flatnonzero(spans.visit_ends)
