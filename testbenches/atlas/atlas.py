@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ...golden.specification.card_order import MAXIMUM_NODES, merge_card
+from ...golden.specification.card_order import MAXIMUM_NODES
 from ...golden.specification.errors import InputError
 from ..comparison.cage import Cage
 from ..comparison.node_sweep import repeated, repeated_piece
@@ -49,7 +49,8 @@ class AtlasOptions:
     ``nodes``          each cage's smallest piece that repeats is taken so often; none: as it is
     ``sizes``          of the pictures
     ``fraction_bits``  numbers of them, or ``exact``
-    ``retain``         cages of nodes with lists (True), without (False), or both
+    ``retain``         cages of nodes with lists (True), without (False), or both; those that make
+                       the triangles of objects have none
     ``simulate``       each point in RTL, too
     ``check_node``     one node of each chain and tree with lists, at exact precision, in RTL
     ``engine``         a name of ``engines.ENGINES`` or ``auto``
@@ -90,7 +91,7 @@ class AtlasOptions:
             named = Cage.named(name)
             spelled = named.spelled or ""
             lists = [False, True] if self.retain is None else [self.retain]
-            for retained in lists if merge_card(spelled) is not None else [False]:
+            for retained in lists if named.can_retain else [False]:
                 for cards in ([repeated(repeated_piece(spelled), number) for number in nodes]
                               if spelled and nodes else [named.cards]):
                     found[replace(named, cards=cards, retained=retained)] = None

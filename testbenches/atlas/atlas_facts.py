@@ -27,8 +27,9 @@ def atlas_facts(atlas: Atlas) -> dict[str, Any]:
     ``winners``      of each measure: kind, and in how many cells of the map it is the best
     ``points``       a list of objects, in the order asked for:
 
-        ``scene`` ``size`` ``cage`` (label) ``cards`` ``retained`` ``regions`` ``kind``
-        ``fraction_bits`` (as asked for)
+        ``scene`` ``size`` ``cage`` (label) ``cards`` ``retained`` ``regions`` ``objects_in``
+        (where it makes triangles of objects: nodes, elements, controller; None: it is sent
+        triangles) ``kind`` ``fraction_bits`` (as asked for)
         ``machine``      organisation, elements, nodes, memory_units, fraction_bits, triangle_bits,
                          pixel_bits (of a pixel that is sent)
         ``source``       model or rtl: who says draw and merge
@@ -36,11 +37,14 @@ def atlas_facts(atlas: Atlas) -> dict[str, Any]:
         ``draw`` ``merge``  clocks; ``work``, of a frame of many, without the wait for a scan;
         ``scan``         clocks of a scan, ``scans``, how many whole ones a frame lasts
         ``limit``        what takes longest: broadcast, busiest element, memory ports, waiting,
-                         merge; ``bounds``, clocks that each of them takes at least
-        ``memory``       bits: pictures, lists, maps, frame_units, queues, tables; ``memory_bits``
+                         merge, set-up; ``bounds``, clocks that each of them takes at least
+        ``memory``       bits: pictures, lists, meshes, maps, frame_units, queues, tables;
+                         ``memory_bits``
         ``cells``        flip-flops, gates and partial products of all boards, by the fit to
                          counted ones
-        ``traffic``      bits of a picture: host, nodes, all, and on the busiest_link
+        ``traffic``      bits of a picture: host, nodes (pixels, or objects that elements pass on),
+                         all, and on the busiest_link; once, those of lists or meshes that are
+                         loaded before the first picture, which all leaves out
         ``error``        bound in LSB; pixels, wrong_pixels, depth_maximum, depth_mean,
                          depth_anywhere, color_maximum, against the exact picture
         ``simulated``    None, or engine, frame, load, model (its draw, merge, work, memory_bits),
@@ -78,7 +82,7 @@ def _asked(point: AtlasPoint) -> dict[str, Any]:
     return {"scene": point.scene.name, "size": list(point.scene.size), "cage": cage.label,
             "cards": cage.cards, "retained": cage.retained,
             "regions": None if cage.regions is None else list(cage.regions),
-            "kind": kind_of(cage), "fraction_bits": point.fraction_bits}
+            "objects_in": cage.objects, "kind": kind_of(cage), "fraction_bits": point.fraction_bits}
 
 
 def atlas_csv(atlas: Atlas) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ...golden.specification.card_order import merge_card
+from ...golden.specification.fields.making import Objects
 from ..comparison.cage import Cage
 from .atlas import Atlas
 from .points.atlas_point import AtlasPoint, Figures, FractionBits
@@ -88,11 +89,17 @@ def kind_of(cage: Cage) -> str:
     named = KINDS[merge]
     if cage.regions is not None:
         named = "regions {}x{}".format(*cage.regions)
+    if cage.objects is not None:
+        named += f", {MAKERS[cage.objects]}"
     return f"{named}, lists" if cage.retained else named
 
 
 #: Merge card → what a cage with it is called on the map.
 KINDS = {None: "host broadcast", "C": "chain", "T": "tree", "S": "bus", "D": "direct"}
+
+#: Where a cage makes the triangles of objects → what is said of that.
+MAKERS: dict[Objects, str] = {"nodes": "objects in nodes", "elements": "objects in elements",
+                              "controller": "objects in controller"}
 
 
 def finest(atlas: Atlas) -> FractionBits:

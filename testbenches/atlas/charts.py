@@ -19,11 +19,11 @@ from .points.model_figures import LIMITS
 
 #: Of kinds of cages, in turn as they were asked for; those with lists are darker.
 KIND_COLORS = ("#8fb7dd", "#8ccfae", "#f0b671", "#c3a3dc", "#e79a93", "#86cbd1", "#d6cf7a",
-               "#c9b39b")
+               "#c9b39b", "#b5bcc6", "#e6a8cf", "#aad57f", "#f2c9a1")
 LIST_SHADE = 0.68
 
 LIMIT_COLORS = dict(zip(LIMITS.values(), (
-    "#d98a2b", "#3b82c4", "#2a9d6f", "#c9a227", "#8a5fb0"), strict=True))
+    "#d98a2b", "#3b82c4", "#2a9d6f", "#c9a227", "#8a5fb0", "#c4525b"), strict=True))
 
 #: More rows of limits than that would be no picture any more.
 MOST_ROWS = 60

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ...golden.merging.cage import merge_cage
 from ...golden.merging.traffic import Traffic
 from ...golden.planning.machine_plan import plan
 from ...golden.scene_display_list import SceneDisplayList
+from ...golden.scenes.scene_files.values import nearest
 from ...golden.specification.card_order import (
     DIRECT_MERGE,
     NODE_ENDS,
@@ -21,6 +22,7 @@ from ...golden.specification.card_order import (
 )
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.errors import InputError
+from ...golden.specification.fields.making import Objects
 from ..frames.compare import Comparison, compare
 from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
 from ..frames.object_figures import ObjectFigures
@@ -37,32 +39,49 @@ from .view_spread import ViewFigures, draw_views
 MEASURED_ALIKE = 1.05
 
 
+#: Between what a cage is and where it makes the triangles of objects.
+MADE_IN = "@"
+
+
 @dataclass(frozen=True)
 class Cage:
     """``cards`` as they were asked for; ``retained``: nodes draw lists that were loaded once;
-    ``regions``: columns and rows of them that are dealt out, if any are."""
+    ``regions``: columns and rows of them that are dealt out, if any are; ``objects``: where it
+    makes the triangles of objects, None as is asked of all cages."""
 
     cards: str
     retained: bool = False
     regions: tuple[int, int] | None = None
+    objects: Objects | None = None
 
     @classmethod
     def named(cls, name: str, retained: bool = False) -> Cage:
-        """``4x(PMM)``, or with regions ``4x(PMM)/8x8``; what cannot be read is taken for cards.
+        """``4x(PMM)``, with regions ``4x(PMM)/8x8``, or with the place where it makes the triangles
+        of objects, ``4x(PMMT)@nodes``, ``4x(PMM)/8x8@elements``, ``4x(PMM)@controller``.
+
+        What else cannot be read is taken for cards.  One that makes triangles keeps meshes, and no
+        lists, whatever ``retained`` says.  Raises ``InputError`` for another place.
 
         >>> Cage.named("4x(PMM)/8x4")
-        Cage(cards='4x(PMM)', retained=False, regions=(8, 4))
+        Cage(cards='4x(PMM)', retained=False, regions=(8, 4), objects=None)
+        >>> Cage.named("2x(PMT)@nodes").label
+        '2x(PMT)@nodes'
         """
+        name, made, place = name.partition(MADE_IN)
+        objects = _place(name, place) if made else None
+        retained = retained and objects is None
         match = re.fullmatch(r"(.*?)\s*/\s*([0-9]{1,4})x([0-9]{1,4})\s*", name, re.DOTALL)
         if match is None:
-            return cls(name, retained)
-        return cls(match[1], retained, (int(match[2]), int(match[3])))
+            return cls(name, retained, None, objects)
+        return cls(match[1], retained, (int(match[2]), int(match[3])), objects)
 
     @property
     def label(self) -> str:
         named = self.cards
         if self.regions is not None:
             named += "/{}x{}".format(*self.regions)
+        if self.objects is not None:
+            named += f"{MADE_IN}{self.objects}"
         return f"{named} retained" if self.retained else named
 
     @property
@@ -73,38 +92,54 @@ class Cage:
         except InputError:
             return None
 
+    @property
+    def can_retain(self) -> bool:
+        """It has nodes, which can draw from lists."""
+        return merge_card(self.spelled or "") is not None and self.objects is None
+
     def options(self, asked: MachineOptions) -> MachineOptions:
         """What is asked of this cage, of all that is asked of every one."""
         merge = merge_card(self.spelled or "")
         dealing: dict[str, Any] = {name: None if self.regions is None else getattr(asked, name)
                                    for name in ("slots", "balance", "balancer")}
+        forwards = self.makes_triangles(asked) == "elements"
         return replace(asked, cards=self.cards, retain=self.retained or None,
                        list_words=asked.list_words if self.retained else None,
                        regions=self.regions, **dealing,
-                       packet=None if merge is None and not self._forwards(asked, merge)
-                       else asked.packet,
+                       packet=None if merge is None and not forwards else asked.packet,
                        queue=asked.queue if merge == DIRECT_MERGE else None,
                        **self._objects(asked))
 
-    def makes_triangles(self, asked: MachineOptions) -> bool:
-        """It has what is asked for, nodes, elements or a controller, to make the triangles of
-        objects."""
+    def makes_triangles(self, asked: MachineOptions) -> Objects | None:
+        """Where this cage makes the triangles of objects: where its own name says, be there such a
+        place or not, else where all cages are asked to and it can."""
+        if self.objects is not None:
+            return self.objects
         merge = merge_card(self.spelled or "")
-        return asked.objects is not None and not self.retained and {
-            "nodes": merge in NODE_ENDS, "controller": merge is None,
-            "elements": self._forwards(asked, merge)}[asked.objects]
-
-    def _forwards(self, asked: MachineOptions, merge: str | None) -> bool:
-        return asked.objects == "elements" and merge is None and self.regions is not None
+        if asked.objects is None or self.retained or not {
+                "nodes": merge in NODE_ENDS, "controller": merge is None,
+                "elements": merge is None and self.regions is not None}[asked.objects]:
+            return None
+        return asked.objects
 
     def _objects(self, asked: MachineOptions) -> dict[str, Any]:
-        """Where this cage makes the triangles of objects, as is asked; another kind of cage is sent
-        triangles, which are set up by the same means."""
-        fits = self.makes_triangles(asked)
-        fields: dict[str, Any] = {name: getattr(asked, name) if fits else None
-                                  for name in ("objects", "mesh_triangles", "meshes")}
-        setup = asked.setup or (None if asked.objects is None else "fast")
-        return fields | {"setup": setup}
+        """What is asked of a cage that makes triangles; another one is sent them, which, where all
+        are asked to make triangles, it sets up by the same means."""
+        place = self.makes_triangles(asked)
+        fields: dict[str, Any] = {name: None if place is None else getattr(asked, name)
+                                  for name in ("mesh_triangles", "meshes")}
+        setup = asked.setup or ("fast" if place or asked.objects else None)
+        return fields | {"objects": place, "setup": setup}
+
+
+def _place(cage: str, place: str) -> Objects:
+    """``InputError`` for one where no machine makes triangles."""
+    known = {each: each for each in get_args(Objects)}
+    if (found := known.get(place.strip())) is None:
+        raise InputError(f"cage: {cage}{MADE_IN}{place}: {place.strip()!r} is no place where "
+                         "triangles of objects are made, which comes last, as in "
+                         f"4x(PMM)/1x4@elements; {nearest(place.strip(), known)}")
+    return found
 
 
 @dataclass(frozen=True)
@@ -242,7 +277,7 @@ def _picture_differences(comparison: Comparison, frames: FrameSequence) -> list[
 
 def _sent_triangles(job: CageJob) -> list[str]:
     place = job.options.objects
-    if place is None or job.cage.makes_triangles(job.options):
+    if place is None or job.cage.makes_triangles(job.options) is not None:
         return []
     return [f"triangles are sent to it: objects are made in {place}, which it has not"]
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from ...golden.objects.object_words import made_of_objects
 from ...golden.scene_display_list import SceneDisplayList, description_of
-from ...golden.specification.card_order import MAXIMUM_NODES, merge_card
+from ...golden.specification.card_order import MAXIMUM_NODES
 from ...golden.specification.errors import InputError
+from ...golden.specification.fields.making import Objects
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
 from ..render import DEFAULT_SCENE
@@ -106,8 +107,7 @@ class CompareOptions:
         found: dict[Cage, None] = {}
         for cards in self.cards:
             lists = [False, True] if self.retain is None else [self.retain]
-            nodes = merge_card(Cage.named(cards).spelled or "") is not None
-            for retained in lists if nodes else [False]:
+            for retained in lists if Cage.named(cards).can_retain else [False]:
                 found[Cage.named(cards, retained)] = None
         return list(found)
 
@@ -242,7 +242,7 @@ def _check_objects(scene: SceneDisplayList, asked: MachineOptions, cages: Sequen
     if asked.objects is None:
         return
     made_of_objects(scene.display_list)
-    if not any(cage.makes_triangles(asked) for cage in cages):
+    if not any(cage.makes_triangles(asked) == asked.objects for cage in cages):
         raise InputError(f"objects: none of these cages makes triangles of objects in "
                          f"{asked.objects}; give one that does, such as "
                          f"{_MAKES_TRIANGLES[asked.objects]}, or leave objects out")
@@ -257,7 +257,7 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
     job = CageJob(Cage(""), loaded, options.machine, options.engine, options.random_memory)
     cages, points = options.cages(), options.points()
     _check_objects(loaded, options.machine, cages)
-    known = {(cage.spelled, cage.retained, cage.regions) for cage in cages}
+    known = {(cage.spelled, *_used(cage)) for cage in cages}
     jobs: list[CageJob | PointJob] = [replace(job, cage=cage, cells=options.cells, views=views)
                                       for cage in cages]
     jobs += [PointJob(place, job, place.nodes <= options.simulate and _key(place) not in known)
@@ -273,15 +273,22 @@ def _compared(scene: str | Path, options: CompareOptions, command_line: str | No
                           command_line, time.perf_counter() - began)
 
 
-def _key(place: Place) -> tuple[str | None, bool, tuple[int, int] | None] | None:
+#: How a cage is used: with lists, with regions, and where it makes triangles of objects.
+_Used = tuple[bool, tuple[int, int] | None, Objects | None]
+
+
+def _used(cage: Cage) -> _Used:
+    return cage.retained, cage.regions, cage.objects
+
+
+def _key(place: Place) -> tuple[str | None, bool, tuple[int, int] | None, Objects | None] | None:
     """As which cage of the comparison a point is drawn, if it is one."""
-    return None if place.copies > 1 else (place.cage.spelled, place.retained, place.regions)
+    return None if place.copies > 1 else (place.cage.spelled, *_used(place.cage))
 
 
 def _curves(found: Sequence[Any], runs: Sequence[CageRun]) -> tuple[list[Curve], list[str]]:
     """The curves, and what is wrong with the cages that were simulated for them alone."""
-    compared = {(run.configuration.cards, run.cage.retained, run.cage.regions): run
-                for run in runs}
+    compared = {(run.configuration.cards, *_used(run.cage)): run for run in runs}
     points: list[Point] = []
     wrong: list[str] = []
     for result in found:

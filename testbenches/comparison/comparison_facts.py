@@ -27,7 +27,9 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
     ``pictures``      labels of the cages that show one picture, a list for each picture
     ``cages``         a list of objects, in the order in which the cages were asked for:
 
-        ``label`` ``cards`` ``retained`` ``machine`` (every field, and what follows from it)
+        ``label`` ``cards`` ``retained`` ``objects_in`` (where the cage's own name says that
+        triangles of objects are made; else None) ``machine`` (every field, and what follows from
+        it)
         ``equal`` ``differences`` ``pixels`` ``depth`` (compared, different)
         ``cycles``        boot, load (None without lists), draw, merge, frame, scan; bound_by:
                           draw, merge or scan, of which a frame takes as long as one, or some
@@ -44,11 +46,12 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
                           draw, merge, fragments, busiest_node_share, pixels_sent; else None
         ``engine`` ``simulated_cycles`` ``seconds`` ``build_seconds``
 
-    ``refused``       objects: label, cards, retained, regions, reason, failed (it was built, and
-                      delivered no picture)
-    ``sweep``         objects, of each curve: label, cards (that repeat), retained, regions, growing
-                      (the scene does, with the nodes), points: nodes, triangles, model and
-                      simulated (draw, merge, total, speed_up; simulated may be None)
+    ``refused``       objects: label, cards, retained, regions, objects_in, reason, failed (it was
+                      built, and delivered no picture)
+    ``sweep``         objects, of each curve: label, cards (that repeat), retained, regions,
+                      objects_in, growing (the scene does, with the nodes), points: nodes,
+                      triangles, model and simulated (draw, merge, total, speed_up; simulated may be
+                      None)
     ``warnings`` ``wall_seconds``
     """
     return {
@@ -62,7 +65,7 @@ def comparison_facts(comparison: CageComparison) -> dict[str, Any]:
         "cages": [cage_facts(run) for run in comparison.runs],
         "refused": [{"label": each.cage.label, "cards": each.cage.cards,
                      "retained": each.cage.retained, "regions": each.cage.regions,
-                     "reason": each.reason, "failed": each.failed}
+                     "objects_in": each.cage.objects, "reason": each.reason, "failed": each.failed}
                     for each in comparison.refused],
         "sweep": [_curve(curve) for curve in comparison.curves],
         "warnings": comparison.warnings,
@@ -76,6 +79,7 @@ def cage_facts(run: CageRun) -> dict[str, Any]:
         "label": run.cage.label,
         "cards": run.cage.cards,
         "retained": run.cage.retained,
+        "objects_in": run.cage.objects,
         "machine": machine_facts(run.configuration),
         "equal": not run.differences,
         "differences": list(run.differences),
@@ -133,6 +137,7 @@ def _curve(curve: Curve) -> dict[str, Any]:
         "cards": curve.piece,
         "retained": curve.retained,
         "regions": curve.regions,
+        "objects_in": curve.objects,
         "growing": curve.growing,
         "points": [{"nodes": point.place.nodes, "triangles": point.triangles,
                     "model": time(point.model, model),

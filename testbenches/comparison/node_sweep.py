@@ -29,6 +29,7 @@ from ...golden.specification.card_order import (
 from ...golden.specification.configuration import MachineConfiguration, Packet
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
+from ...golden.specification.fields.making import Objects
 from ..frames.region_figures import RegionTables
 from ..frames.setup_timing import setup_timing
 from .cage import Cage, CageJob, CageRun, Refused
@@ -71,8 +72,11 @@ def grown(display_list: DisplayList, copies: int, packet: Packet = 1) -> Display
     """``copies`` of a list one after the other, each wholly before those drawn earlier.
 
     Each begins a packet further on, so that nodes get other triangles of it than of the copy
-    before: every node draws as much as one did of the list alone, all over the picture.
+    before: every node draws as much as one did of the list alone, all over the picture.  A single
+    copy is the list itself, objects included; of several copies only triangles are known.
     """
+    if copies == 1:
+        return display_list
     thickness = ((1 << display_list.depth_bits) - 1) // copies
     step = packet if isinstance(packet, int) else 0  # each node has one packet
 
@@ -121,10 +125,11 @@ class Place:
     growing: bool
     nodes: int
     regions: tuple[int, int] | None = None
+    objects: Objects | None = None
 
     @property
     def cage(self) -> Cage:
-        return Cage(repeated(self.piece, self.nodes), self.retained, self.regions)
+        return Cage(repeated(self.piece, self.nodes), self.retained, self.regions, self.objects)
 
     @property
     def copies(self) -> int:
@@ -171,16 +176,17 @@ def time_of(run: CageRun | Refused | None) -> FrameTime | None:
 
 
 def places(cages: Sequence[Cage], nodes: Sequence[int]) -> Iterator[Place]:
-    """The points of all curves, each once: with one node nothing has grown yet."""
-    pieces: dict[tuple[str, bool, tuple[int, int] | None], None] = {}
+    """The points of all curves, each once: with one node nothing has grown yet, and a scene of
+    objects does not grow."""
+    kinds: dict[tuple[str, Cage], None] = {}
     for cage in cages:
         if cage.spelled is not None:
-            pieces[repeated_piece(cage.cards), cage.retained, cage.regions] = None
-    for piece, retained, regions in pieces:
-        for growing in (False, True):
+            kinds[repeated_piece(cage.cards), replace(cage, cards="")] = None
+    for piece, kind in kinds:
+        for growing in (False, True) if kind.objects is None else (False,):
             for number in sorted(set(nodes)):
                 if not growing or number > 1:
-                    yield Place(piece, retained, growing, number, regions)
+                    yield Place(piece, kind.retained, growing, number, kind.regions, kind.objects)
 
 
 @dataclass(frozen=True)
@@ -192,12 +198,15 @@ class Curve:
     growing: bool
     points: Sequence[Point]
     regions: tuple[int, int] | None = None
+    objects: Objects | None = None
 
     @property
     def label(self) -> str:
         piece = self.piece if merge_card(self.piece) else f"{self.piece}, one node"
         if self.regions is not None:
             piece += ", {}x{} regions".format(*self.regions)
+        if self.objects is not None:
+            piece += f", objects made in {self.objects}"
         return f"{piece}, retained" if self.retained else piece
 
     def speed_ups(self) -> list[tuple[Point, float, float | None]]:
@@ -217,12 +226,14 @@ def _rate(triangles: int, time: FrameTime) -> float:
 def curves_of(points: Sequence[Point]) -> list[Curve]:
     """The curves, those of the scene as it is first; each scene that grows begins as it is."""
 
-    def key(point: Point) -> tuple[bool, str, bool, tuple[int, int]]:
+    def key(point: Point) -> tuple[bool, str, bool, tuple[int, int], str]:
         place = point.place
-        return place.growing, place.piece, place.retained, place.regions or (0, 0)
+        return (place.growing, place.piece, place.retained, place.regions or (0, 0),
+                place.objects or "")
 
     begin = [replace(point, place=replace(point.place, growing=True)) for point in points
-             if point.place.nodes == 1]
+             if point.place.nodes == 1 and point.place.objects is None]
     ordered = sorted([*points, *begin], key=lambda point: (*key(point), point.place.nodes))
-    return [Curve(piece, retained, growing, list(some), None if regions == (0, 0) else regions)
-            for (growing, piece, retained, regions), some in groupby(ordered, key)]
+    curves = [list(some) for _, some in groupby(ordered, key)]
+    return [Curve(place.piece, place.retained, place.growing, some, place.regions, place.objects)
+            for some in curves for place in [some[0].place]]

@@ -9,6 +9,7 @@ from pathlib import Path
 from ....golden.scene_argument import BuiltInScene, HardCaseScene, parse_scene
 from ....golden.scene_display_list import SceneDisplayList
 from ....golden.scenes.scene_files.examples import EXAMPLE_FOLDER, EXAMPLES
+from ....golden.scenes.scene_files.object_list import ObjectDisplayList
 from ....golden.specification.display_list import DisplayList
 from ...machine_options import MachineOptions, load_scene
 from ...support.cache import content_hash
@@ -63,6 +64,15 @@ def _examples() -> str:
 
 
 def _hash(listed: DisplayList) -> str:
+    """Of all that a machine is told of it: of objects as well, since other ones may have the same
+    triangles."""
     numbers = (listed.width, listed.height, listed.sub_bits, listed.depth_bits, listed.background)
-    return content_hash([repr(numbers), *(
-        array.tobytes().hex() for array in (listed.position, listed.depth, listed.color))])
+    arrays = [listed.position, listed.depth, listed.color]
+    made: object = None
+    if isinstance(listed, ObjectDisplayList):
+        objects = listed.objects
+        made = objects.picture, objects.background, [mesh.triangles for mesh in objects.meshes]
+        arrays += [listed.counts, objects.mesh, objects.offset, objects.color,
+                   *(part for mesh in objects.meshes
+                     for part in (mesh.position, mesh.depth, mesh.shade))]
+    return content_hash([repr((numbers, made)), *(array.tobytes().hex() for array in arrays)])

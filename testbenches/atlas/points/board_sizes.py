@@ -20,6 +20,8 @@ import numpy as np
 from ....golden.planning.machine_plan import triangle_bits
 from ....golden.specification.card_order import CARD_MODULES, DIRECT_MERGE
 from ....golden.specification.configuration import MachineConfiguration
+from ....golden.specification.errors import InputError
+from ....golden.specification.fields.making import Objects
 
 #: What was counted, in ``testbenches/data``.
 COUNTED = "board_cells.json"
@@ -27,38 +29,66 @@ COUNTED = "board_cells.json"
 #: Boards whose size depends on how many ports memory units have.
 OF_PORTS = ("processing_element", "memory_unit")
 
+_CONTROLLER = "central_broadcast_controller"
 _CROSSBAR = CARD_MODULES[DIRECT_MERGE]
+
+#: Of a machine's interval between two set-ups only this was counted: fast.
+COUNTED_INTERVAL = 1
 
 
 class Kind(NamedTuple):
-    """Boards of a kind are as large but for the width of their words."""
+    """Boards of a kind are as large but for the width of their words.
+
+    ``objects``  where the machine makes triangles of objects, if the board is one that knows
+    ``flat``     a board that makes them has a plane to set up for depth alone
+    """
 
     board: str
     merge: str | None
     regions: bool
     retained: bool
     ports: int
+    objects: Objects | None = None
+    flat: bool = False
 
 
-def board_kind(board: str, *, merge: str | None, regions: bool, retained: bool, ports: int) -> Kind:
-    """A list is in the merge card that ends a node, before a direct merge in the element."""
+def board_kind(board: str, *, merge: str | None, regions: bool, retained: bool, ports: int,
+               objects: Objects | None = None, flat: bool = False) -> Kind:
+    """A list is in the merge card that ends a node, before a direct merge in the element.  Meshes
+    and set-up are there where triangles of objects are made.  What makes no triangles does not know
+    of objects, but for the controller, which hands them on, and for all of a machine whose elements
+    pass them on: its pixels have an order, and its regions no tables."""
     home = "processing_element" if merge == DIRECT_MERGE else CARD_MODULES.get(merge or "")
+    maker = {"controller": _CONTROLLER, "nodes": home, "elements": "processing_element", None: ""
+             }[objects]
+    knows = board in (maker, _CONTROLLER) or objects == "elements"
     return Kind(board, merge, regions, retained and board == home,
-                ports if board in OF_PORTS else 1)
+                ports if board in OF_PORTS else 1, objects if knows else None,
+                flat and board == maker)
 
 
 def cells_of_cage(configuration: MachineConfiguration) -> int:
     """Flip-flops, gates of one bit and partial products of multipliers, of all boards; memory is
-    ``memory_bits``'s."""
+    ``memory_bits``'s.  ``InputError`` for boards of which none was counted."""
     letters = Counter(configuration.cards)
-    boards = {"central_broadcast_controller": 1, "video_scan_generator": 1} | {
+    boards = {_CONTROLLER: 1, "video_scan_generator": 1} | {
         CARD_MODULES[letter]: number for letter, number in letters.items()}
     return sum(number * _cells(configuration, board) for board, number in boards.items())
 
 
+def kind_of_board(configuration: MachineConfiguration, board: str) -> Kind:
+    """As ``configuration`` has it."""
+    return board_kind(board, merge=configuration.merge, regions=configuration.regions is not None,
+                      retained=configuration.list_words > 0, ports=configuration.memory_ports,
+                      objects=configuration.objects, flat=configuration.shading == "flat")
+
+
 def _cells(configuration: MachineConfiguration, board: str) -> int:
-    kind = board_kind(board, merge=configuration.merge, regions=configuration.regions is not None,
-                      retained=configuration.list_words > 0, ports=configuration.memory_ports)
+    kind = kind_of_board(configuration, board)
+    if kind not in _lines() or (configuration.objects is not None
+                                and configuration.setup_interval != COUNTED_INTERVAL):
+        raise InputError(f"{configuration.cards}: a {board.replace('_', ' ')} of such a machine "
+                         "was not counted, so that nobody knows how large it is; take another cage")
     size = board_size(board, triangle_bits(configuration),
                       configuration.processing_elements * configuration.units)
     return cells_of_board(kind, size)
@@ -88,7 +118,8 @@ def _lines() -> dict[Kind, tuple[float, float]]:
     points: dict[Kind, list[tuple[float, float]]] = {}
     for each in counted():
         kind = board_kind(each["board"], merge=each["merge"], regions=each["regions"],
-                          retained=each["retained"], ports=each["memory_ports"])
+                          retained=each["retained"], ports=each["memory_ports"],
+                          objects=each["objects"], flat=each["flat"])
         size = board_size(each["board"], each["triangle_bits"], each["elements"] * each["units"])
         points.setdefault(kind, []).append((float(size), float(each["cells"])))
     lines = {}

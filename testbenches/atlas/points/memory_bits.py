@@ -7,10 +7,21 @@ what is in them, some bits off.  A test holds the sum to the Verilog of every ki
 
 from __future__ import annotations
 
+from ....golden.cycles.objects.object_setup import OBJECTS_WAITING as OBJECTS_BEFORE_READER
 from ....golden.planning.machine_plan import triangle_bits
 from ....golden.specification.card_order import MEMORY_UNIT, TREE_MERGE
+from ....golden.specification.commands import (
+    layout_bits,
+    mesh_layout,
+    mesh_triangle_layout,
+    object_layout,
+    triangle_layout,
+)
 from ....golden.specification.configuration import MachineConfiguration
+from ....golden.specification.queues import OBJECTS_PASSING, OBJECTS_WAITING, OUTLINES_WAITING
 from ....golden.specification.ranges import COLOR_BITS
+from ...frames.setup_timing import setup_timing
+from .object_link import passed_object_bits
 
 #: Bits of a word of a map of what was drawn, and of its summary.
 MAP_WORD = 64
@@ -27,17 +38,21 @@ ACCESSES, ACCESS_BITS = 15, 13
 #: Places of a queue of a crossbar.
 CROSSBAR_PLACES = 2
 
+#: Bits of an outline beside its vertices, its box and its area.
+OUTLINE_BITS = 14
+
 
 def memory_bits(configuration: MachineConfiguration) -> dict[str, int]:
-    """What for → bits, of all boards: ``pictures``, ``lists``, ``maps``, ``frame_units``,
-    ``queues``, ``tables``."""
+    """What for → bits, of all boards: ``pictures``, ``lists``, ``meshes``, ``maps``,
+    ``frame_units``, ``queues``, ``tables``."""
     units = configuration.cards.count(MEMORY_UNIT)
     return {
         "pictures": units * configuration.words * word_bits(configuration),
         "lists": configuration.nodes * configuration.list_words * _kept_bits(configuration),
+        "meshes": makers(configuration) * _mesh_bits(configuration),
         "maps": units * _map_bits(configuration),
         "frame_units": _frame_bits(configuration),
-        "queues": _queue_bits(configuration, units),
+        "queues": _queue_bits(configuration, units) + _making_bits(configuration),
         "tables": _table_bits(configuration),
     }
 
@@ -54,6 +69,43 @@ def word_bits(configuration: MachineConfiguration) -> int:
 def _kept_bits(configuration: MachineConfiguration) -> int:
     """Of a triangle in its node, which needs no number of it any more."""
     return triangle_bits(configuration) - configuration.node_bits
+
+
+def makers(configuration: MachineConfiguration) -> int:
+    """How many places make triangles of objects."""
+    return {None: 0, "controller": 1, "nodes": configuration.nodes,
+            "elements": configuration.processing_elements}[configuration.objects]
+
+
+def _mesh_bits(configuration: MachineConfiguration) -> int:
+    """Of all meshes, where one place keeps them: triangles, a flat machine's with one colour;
+    where each mesh begins and how many it has; and, where objects are passed on, its box."""
+    triangle = layout_bits(mesh_triangle_layout(configuration))
+    if configuration.shading == "flat":
+        triangle -= 2 * COLOR_BITS
+    last = configuration.mesh_triangles - 1
+    entry = last.bit_length() + (last + 1).bit_length()
+    if configuration.forwards_objects:
+        entry += layout_bits(mesh_layout(configuration))
+    return configuration.mesh_triangles * triangle + configuration.meshes * entry
+
+
+def _making_bits(configuration: MachineConfiguration) -> int:
+    """Of the queues where triangles of objects are made: objects, outlines, triangles whose parts
+    are on their way, and objects that come from the host and from both neighbours."""
+    timing = setup_timing(configuration) if configuration.objects is not None else None
+    if timing is None:
+        return 0
+    vertices = layout_bits(triangle_layout(configuration))
+    outline = (vertices + 3 * configuration.y_bits + 2 * configuration.x_bits
+               + 2 * configuration.coordinate_bits + OUTLINE_BITS)
+    entry = 1 + max(vertices, layout_bits(object_layout(configuration)))
+    # The last one of each queue is in a register.
+    found = ((OBJECTS_BEFORE_READER - 1) * entry + (OUTLINES_WAITING - 1) * outline
+             + (timing.inside - 1) * triangle_bits(configuration))
+    if configuration.forwards_objects:
+        found += (OBJECTS_WAITING + 2 * OBJECTS_PASSING) * passed_object_bits(configuration)
+    return makers(configuration) * found
 
 
 def _map_bits(configuration: MachineConfiguration) -> int:

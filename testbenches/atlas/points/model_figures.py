@@ -20,10 +20,14 @@ from ...comparison.node_sweep import predicted_drawing
 from .atlas_point import AtlasPoint, Figures
 from .board_sizes import cells_of_cage
 from .memory_bits import memory_bits
+from .object_link import ObjectLink, object_link
 from .precision_error import precision_error
 
 #: Commands of a frame besides its triangles: its start, its end, and to draw the lists.
 FRAME_COMMANDS, LIST_COMMANDS = 2, 1
+
+#: And before the lists are loaded.
+CLEAR_COMMANDS = 1
 
 #: Drawing that takes so many times longer than each part of it would alone is limited by none of
 #: these: elements wait, one after another, for what each alone would have had time for.
@@ -31,18 +35,21 @@ WAITING = 1.25
 
 #: What can limit a point, by the names that ``CyclePrediction.bounds`` has for them.
 LIMITS = {"broadcast": "broadcast", "busiest element": "busiest element",
-          "busiest port": "memory ports", "waiting": "waiting", "merge": "merge"}
+          "busiest port": "memory ports", "waiting": "waiting", "merge": "merge",
+          "set-up": "set-up"}
 
 
 @dataclass(frozen=True, eq=False)
 class Work:
-    """What does not depend on precision; ``kept``, the triangles that may cover a pixel."""
+    """What does not depend on precision, but where the machine sets triangles up; ``kept``, the
+    triangles that may cover a pixel; ``link``, what the host says of objects."""
 
     prediction: CyclePrediction
     merge: int
     traffic: Traffic | None
     fragments: int
     kept: int
+    link: ObjectLink | None
 
 
 def work_of(configuration: MachineConfiguration, display_list: DisplayList, retained: bool
@@ -54,11 +61,14 @@ def work_of(configuration: MachineConfiguration, display_list: DisplayList, reta
         prediction, predict_merge(configuration, display_list),
         merge_cage(configuration, display_list)[1] if organisation.merges else None,
         int(depth_complexity(display_list, **organisation.resolution.shifts).sum()),
-        len(prediction.finished))
+        len(prediction.finished), object_link(configuration, display_list))
 
 
 def of_any_precision(configuration: MachineConfiguration) -> MachineConfiguration:
-    """Machines for which this is the same take the same clocks."""
+    """Machines for which this is the same take the same clocks.  A set-up's divisions take longer,
+    the more bits they find."""
+    if configuration.setup == "hardware":
+        return configuration
     return replace(configuration, fraction_bits=0, depth_integer_bits=0, channel_integer_bits=0,
                    order_bits=0)
 
@@ -106,18 +116,26 @@ def limit(prediction: CyclePrediction, merge: int) -> str:
 
 def traffic_figures(configuration: MachineConfiguration, point: AtlasPoint, work: Work
                     ) -> dict[str, int]:
-    """Bits of a picture: from the host, between nodes, both, and on the busiest piece of the
-    backplane between two nodes."""
-    commands = FRAME_COMMANDS + (LIST_COMMANDS if point.cage.retained else work.kept)
+    """Bits of a picture: from the host, between nodes or neighbouring elements, both, and on the
+    busiest piece of the backplane between two of these; and from the host once, before the first
+    picture."""
+    if (link := work.link) is not None:
+        drawn, once = link.frame, link.once
+    elif point.cage.retained:
+        drawn, once = LIST_COMMANDS, CLEAR_COMMANDS + work.kept
+    else:
+        drawn, once = work.kept, 0
     if configuration.regions is not None and configuration.balancer == "host" \
             and configuration.balance != "static":
-        commands += configuration.dealt_regions.count
-    host = commands * command_bits(configuration)
-    pixels, busiest = ((0, 0) if work.traffic is None else
-                       (work.traffic.pixels, work.traffic.busiest_piece))
-    bits = sent_pixel_bits(configuration)
-    return {"host": host, "nodes": pixels * bits, "all": host + pixels * bits,
-            "busiest_link": busiest * bits}
+        drawn += configuration.dealt_regions.count
+    host = (FRAME_COMMANDS + drawn) * command_bits(configuration)
+    sent, busiest, bits = 0, 0, sent_pixel_bits(configuration)
+    if work.traffic is not None:
+        sent, busiest = work.traffic.pixels, work.traffic.busiest_piece
+    elif link is not None:
+        sent, busiest, bits = link.passed, link.busiest_piece, link.passed_bits
+    return {"host": host, "nodes": sent * bits, "all": host + sent * bits,
+            "busiest_link": busiest * bits, "once": once * command_bits(configuration)}
 
 
 def _machine(configuration: MachineConfiguration) -> dict[str, Any]:

@@ -3,7 +3,7 @@ sizes to (``testbenches/data/board_cells.json``).
 
     python -m testbenches.studies.sizes.board_cells > testbenches/data/board_cells.json
 
-A quarter of an hour; what was counted is kept.
+Three quarters of an hour; what was counted is kept.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from cardcage.golden.planning.machine_plan import plan, triangle_bits
 from cardcage.golden.specification.card_order import CARD_MODULES, DIRECT_MERGE
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.atlas.points.atlas_point import FractionBits
+from cardcage.testbenches.atlas.points.board_sizes import kind_of_board
 from cardcage.testbenches.comparison.cage import Cage
 from cardcage.testbenches.export.cell_count import count_cells
 from cardcage.testbenches.export.machine_json import component_for
@@ -33,6 +34,13 @@ FORMATS: tuple[tuple[str, int, FractionBits], ...] = (
     ("sphereflake:depth=1", 256, "exact"),
 )
 
+#: Of scenes with objects.
+OBJECT_FORMATS: tuple[tuple[str, int, FractionBits], ...] = (
+    ("five_primitives", 64, 0),
+    ("five_primitives", 64, "exact"),
+    ("three_cubes", 256, "exact"),
+)
+
 #: A cage of each kind, with lists and without; of a direct merge, which grows with elements times
 #: units, three.
 CAGES = (
@@ -44,16 +52,25 @@ CAGES = (
     Cage("8xPD16xM"), Cage("8xPD8xM"),
 )
 
+#: Cages that make the triangles of objects, with set-up for three clocks a triangle.
+OBJECT_CAGES = (
+    Cage("4x(PMM)", objects="controller"), Cage("4x(PMM)", regions=(8, 8), objects="controller"),
+    Cage("4x(PMMC)", objects="nodes"), Cage("4x(PMMT)", objects="nodes"),
+    Cage("4x(PMMS)FF", objects="nodes"), Cage("4x(PMM)", regions=(8, 8), objects="elements"),
+)
+
 _ONCE = ("central_broadcast_controller", "video_scan_generator")
 
 
 class Counted(NamedTuple):
-    """A board of a cage, of that format, whose units have so many ports."""
+    """A board of a cage, of that format, whose units have so many ports; ``flat``: whatever the
+    scene has, colours are not interpolated."""
 
     cage: Cage
     board: str
     ports: int
     format: tuple[str, int, FractionBits]
+    flat: bool = False
 
 
 def wanted() -> list[Counted]:
@@ -68,15 +85,37 @@ def wanted() -> list[Counted]:
             boards = [board for board in boards if board.endswith("_merge")
                       or (DIRECT_MERGE in letters and board == "processing_element")]
         for board in boards:
-            for ports in (1, 2) if board in ("processing_element", "memory_unit") else (1,):
+            for ports in _ports(board):
                 found += [Counted(cage, board, ports, each) for each in formats]
+    return found + _wanted_of_objects()
+
+
+def _ports(board: str) -> tuple[int, ...]:
+    return (1, 2) if board in ("processing_element", "memory_unit") else (1,)
+
+
+def _wanted_of_objects() -> list[Counted]:
+    """The boards that know of objects; of those that make their triangles flat ones, too."""
+    found = []
+    for cage in OBJECT_CAGES:
+        boards = [*(CARD_MODULES[letter] for letter in dict.fromkeys(cage.spelled or "")), *_ONCE]
+        for board in boards:
+            for ports in _ports(board):
+                of_kind = kind_of_board(machine(Counted(cage, board, ports, OBJECT_FORMATS[0],
+                                                        flat=True)), board)
+                if of_kind.objects is not None:
+                    found += [Counted(cage, board, ports, each) for each in OBJECT_FORMATS]
+                if of_kind.flat:
+                    found += [Counted(cage, board, ports, each, flat=True)
+                              for each in OBJECT_FORMATS[1:]]
     return found
 
 
 def machine(counted: Counted) -> MachineConfiguration:
     scene, size, bits = counted.format
     options = counted.cage.options(MachineOptions(
-        size=(size, size), fraction_bits=bits, memory_ports=counted.ports))
+        size=(size, size), fraction_bits=bits, memory_ports=counted.ports,
+        shading="flat" if counted.flat else "auto"))
     listed = load_scene(scene, options).display_list
     return plan(listed, **options.for_plan()).configuration
 
@@ -90,7 +129,8 @@ def count(counted: Counted) -> dict[str, Any]:
     return {
         "cage": counted.cage.label, "board": counted.board, "memory_ports": counted.ports,
         "merge": configuration.merge, "regions": configuration.regions is not None,
-        "retained": counted.cage.retained, "triangle_bits": triangle_bits(configuration),
+        "retained": counted.cage.retained, "objects": configuration.objects,
+        "flat": configuration.shading == "flat", "triangle_bits": triangle_bits(configuration),
         "elements": configuration.processing_elements, "units": configuration.units,
         "cells": cells["flip_flops"] + cells["gates"] + cells["multipliers"],
     }
