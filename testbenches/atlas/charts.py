@@ -28,6 +28,11 @@ LIMIT_COLORS = dict(zip(LIMITS.values(), (
 #: More rows of limits than that would be no picture any more.
 MOST_ROWS = 60
 
+#: In inches, of a cell of the map, and of one in which kinds take two lines, since they tell where
+#: triangles of objects are made.
+CELL_HEIGHT, MAKING_HEIGHT = 0.54, 0.72
+OBJECTS = ", objects"
+
 #: Characters of a scene's name beside the map.
 NAME = 22
 
@@ -50,7 +55,9 @@ def map_figure(atlas: Atlas) -> Figure:
     cells = list(next(iter(found.values())))
     scenes = list(dict.fromkeys(cell.scene for cell in cells))
     columns = sorted({(cell.elements, cell.size) for cell in cells})
-    figure = Figure(figsize=(2.6 + 2.4 * len(columns), 1.6 + 1.08 * max(2, len(scenes))),
+    making = any(OBJECTS in kind for kind in kinds(atlas))
+    height = MAKING_HEIGHT if making else CELL_HEIGHT
+    figure = Figure(figsize=(2.6 + 2.4 * len(columns), 1.6 + 2 * height * max(2, len(scenes))),
                     layout=ConstrainedLayoutEngine(wspace=0.03, hspace=0.04))
     panels = figure.subplots(2, 2, sharex=True, sharey=True, squeeze=False)
     colors = kind_colors(atlas)
@@ -73,9 +80,9 @@ def _map(axes: Axes, places: dict[Cell, Place], scenes: Sequence[str],
                                  linewidth=1.5))
         ahead = "" if place.ahead is None else f"then {place.second}, ×{place.ahead:.2f}"
         ink = "white" if sum(color) < 1.45 else "black"
-        axes.text(x, y - 0.27, place.best.kind, ha="center", va="center", fontsize=8, color=ink,
-                  fontweight="bold")
-        for down, words in ((0.05, f"{place.best.figure:,}"), (0.32, ahead)):
+        axes.text(x, y - 0.27, _broken(place.best.kind), ha="center", va="center", fontsize=8,
+                  color=ink, fontweight="bold")
+        for down, words in ((0.05, f"{place.best.figure:,}"), (0.32, _broken(ahead))):
             axes.text(x, y + down, words, ha="center", va="center", fontsize=6.5, color=ink)
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(scenes) - 0.5, -0.5)
@@ -83,6 +90,11 @@ def _map(axes: Axes, places: dict[Cell, Place], scenes: Sequence[str],
     axes.set_xticks(range(len(columns)), ["{} element{}\n{}x{}".format(
         elements, "s" * (elements > 1), *size) for elements, size in columns], fontsize=8)
     _bare(axes)
+
+
+def _broken(words: str) -> str:
+    """On two lines, where one would be wider than a cell."""
+    return words.replace(OBJECTS, ",\n" + OBJECTS.removeprefix(", "))
 
 
 def limits_figure(atlas: Atlas) -> Figure:

@@ -266,7 +266,9 @@ _OBJECT_OPTIONS = (
 _SEVERAL_CARDS_OPTION = click.option(
     "--cards", multiple=True, metavar="CARDS",
     help=f"A cage, its boards from left to right: {_BOARDS}; with /COLUMNSxROWS behind it, as in "
-    "4x(PMM)/8x8, its elements draw regions of the screen; give it once for each cage.  "
+    "4x(PMM)/8x8, its elements draw regions of the screen; with @nodes, @elements or @controller "
+    "at the end, as in 4x(PMMT)@nodes, it makes the triangles of objects there; give it once for "
+    "each cage.  "
     "[default: 4x(PMM), 4x(PMMC) and 4x(PMMT)]")
 _RETAIN_OR_NOT_OPTION = click.option(
     "--retain/--immediate", default=None, help="Cages of nodes only with list memories, of which "

@@ -4,7 +4,9 @@ yosys takes seconds for each board of each machine.  So ``testbenches.studies.si
 has it count every kind of board once at several formats, from narrow words to wide ones, and here
 a board is as large as the straight line says that lies nearest to these, along the bits of a
 triangle as it is broadcast: its edges and interpolants are what registers, adders and multipliers
-of an element are as wide as.  A direct merge, a crossbar, grows with elements times units instead.
+of an element are as wide as.  A direct merge, a crossbar, grows with elements times units instead;
+a board that makes triangles of objects, whose set-up multiplies coordinates and divides by areas,
+with these bits times those of a coordinate.
 """
 
 from __future__ import annotations
@@ -51,6 +53,22 @@ class Kind(NamedTuple):
     objects: Objects | None = None
     flat: bool = False
 
+    @property
+    def makes(self) -> bool:
+        """It makes triangles of objects."""
+        return self.objects is not None and self.board == _maker(self.objects, self.merge)
+
+
+def _home(merge: str | None) -> str:
+    """The board that a node's list is in."""
+    return "processing_element" if merge == DIRECT_MERGE else CARD_MODULES.get(merge or "", "")
+
+
+def _maker(objects: Objects, merge: str | None) -> str:
+    """The board that has meshes and a set-up."""
+    return {"controller": _CONTROLLER, "nodes": _home(merge), "elements": "processing_element"
+            }[objects]
+
 
 def board_kind(board: str, *, merge: str | None, regions: bool, retained: bool, ports: int,
                objects: Objects | None = None, flat: bool = False) -> Kind:
@@ -58,13 +76,10 @@ def board_kind(board: str, *, merge: str | None, regions: bool, retained: bool, 
     and set-up are there where triangles of objects are made.  What makes no triangles does not know
     of objects, but for the controller, which hands them on, and for all of a machine whose elements
     pass them on: its pixels have an order, and its regions no tables."""
-    home = "processing_element" if merge == DIRECT_MERGE else CARD_MODULES.get(merge or "")
-    maker = {"controller": _CONTROLLER, "nodes": home, "elements": "processing_element", None: ""
-             }[objects]
-    knows = board in (maker, _CONTROLLER) or objects == "elements"
-    return Kind(board, merge, regions, retained and board == home,
-                ports if board in OF_PORTS else 1, objects if knows else None,
-                flat and board == maker)
+    makes = objects is not None and board == _maker(objects, merge)
+    knows = makes or board == _CONTROLLER or objects == "elements"
+    return Kind(board, merge, regions, retained and board == _home(merge),
+                ports if board in OF_PORTS else 1, objects if knows else None, flat and makes)
 
 
 def cells_of_cage(configuration: MachineConfiguration) -> int:
@@ -89,9 +104,9 @@ def _cells(configuration: MachineConfiguration, board: str) -> int:
                                 and configuration.setup_interval != COUNTED_INTERVAL):
         raise InputError(f"{configuration.cards}: a {board.replace('_', ' ')} of such a machine "
                          "was not counted, so that nobody knows how large it is; take another cage")
-    size = board_size(board, triangle_bits(configuration),
-                      configuration.processing_elements * configuration.units)
-    return cells_of_board(kind, size)
+    return cells_of_board(kind, board_size(
+        kind, triangle_bits(configuration), configuration.coordinate_bits,
+        configuration.processing_elements * configuration.units))
 
 
 def cells_of_board(kind: Kind, size: int) -> int:
@@ -100,9 +115,11 @@ def cells_of_board(kind: Kind, size: int) -> int:
     return max(1, round(base + slope * size))
 
 
-def board_size(board: str, bits: int, crossings: int) -> int:
-    """What the size of a board is a line along."""
-    return crossings if board == _CROSSBAR else bits
+def board_size(kind: Kind, bits: int, coordinate_bits: int, crossings: int) -> int:
+    """What the size of a board is a line along; ``bits`` of a triangle."""
+    if kind.makes:
+        return bits * coordinate_bits
+    return crossings if kind.board == _CROSSBAR else bits
 
 
 @lru_cache(maxsize=1)
@@ -112,15 +129,21 @@ def counted() -> list[dict[str, Any]]:
     return list(json.loads(text))
 
 
+def counted_as(each: dict[str, Any]) -> tuple[Kind, int]:
+    """The kind of a board that was counted, and its ``board_size``."""
+    kind = board_kind(each["board"], merge=each["merge"], regions=each["regions"],
+                      retained=each["retained"], ports=each["memory_ports"],
+                      objects=each["objects"], flat=each["flat"])
+    return kind, board_size(kind, each["triangle_bits"], each["coordinate_bits"],
+                            each["elements"] * each["units"])
+
+
 @lru_cache(maxsize=1)
 def _lines() -> dict[Kind, tuple[float, float]]:
     """Of each kind the line nearest to what was counted: cells of nothing, and for each more."""
     points: dict[Kind, list[tuple[float, float]]] = {}
     for each in counted():
-        kind = board_kind(each["board"], merge=each["merge"], regions=each["regions"],
-                          retained=each["retained"], ports=each["memory_ports"],
-                          objects=each["objects"], flat=each["flat"])
-        size = board_size(each["board"], each["triangle_bits"], each["elements"] * each["units"])
+        kind, size = counted_as(each)
         points.setdefault(kind, []).append((float(size), float(each["cells"])))
     lines = {}
     for kind, some in points.items():

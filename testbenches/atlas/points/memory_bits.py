@@ -80,14 +80,17 @@ def makers(configuration: MachineConfiguration) -> int:
 def _mesh_bits(configuration: MachineConfiguration) -> int:
     """Of all meshes, where one place keeps them: triangles, a flat machine's with one colour;
     where each mesh begins and how many it has; and, where objects are passed on, its box."""
-    triangle = layout_bits(mesh_triangle_layout(configuration))
-    if configuration.shading == "flat":
-        triangle -= 2 * COLOR_BITS
+    triangle = layout_bits(mesh_triangle_layout(configuration)) - _unused(configuration)
     last = configuration.mesh_triangles - 1
     entry = last.bit_length() + (last + 1).bit_length()
     if configuration.forwards_objects:
         entry += layout_bits(mesh_layout(configuration))
     return configuration.mesh_triangles * triangle + configuration.meshes * entry
+
+
+def _unused(configuration: MachineConfiguration) -> int:
+    """Of three vertices the colours that a flat machine does not look at."""
+    return 2 * COLOR_BITS if configuration.shading == "flat" else 0
 
 
 def _making_bits(configuration: MachineConfiguration) -> int:
@@ -97,8 +100,9 @@ def _making_bits(configuration: MachineConfiguration) -> int:
     if timing is None:
         return 0
     vertices = layout_bits(triangle_layout(configuration))
-    outline = (vertices + 3 * configuration.y_bits + 2 * configuration.x_bits
-               + 2 * configuration.coordinate_bits + OUTLINE_BITS)
+    box = 3 * configuration.y_bits + 2 * configuration.x_bits
+    outline = (vertices - _unused(configuration) + box + 2 * configuration.coordinate_bits
+               + OUTLINE_BITS)
     entry = 1 + max(vertices, layout_bits(object_layout(configuration)))
     # The last one of each queue is in a register.
     found = ((OBJECTS_BEFORE_READER - 1) * entry + (OUTLINES_WAITING - 1) * outline

@@ -37,7 +37,9 @@ _OF_MACHINE = ("memory_ports", "clocks_per_pixel", "packet", "view", "zoom", "ba
 @click.command(name="atlas")
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
 @click.option("--cages", multiple=True, metavar="CARDS", help="A cage, as --cards of compare has "
-              "them: 4x(PMMT), or with regions 4x(PMM)/8x8; give it once for each cage.  [default: "
+              "them: 4x(PMMT), with regions 4x(PMM)/8x8, or with the place where it makes the "
+              "triangles of a scene file's objects, 4x(PMMT)@nodes, 4x(PMM)/4x4@elements, "
+              "4x(PMM)@controller; give it once for each cage.  [default: "
               f"{', '.join(DEFAULT_CAGES)}]")
 @click.option("--nodes", type=Several(click.IntRange(1, MAXIMUM_NODES), "N,…"),
               help="Each cage with so many nodes, or elements where all is one node.  [default: "
@@ -81,6 +83,10 @@ def atlas_command(command_line: str, /, scenes: tuple[str, ...], cages: tuple[st
     other one.  Whatever was found is kept: an interrupted run goes on where it was, and a second
     one takes a second.
 
+    Cages are sent triangles; one with a place behind its name loads the scene's meshes once, is
+    sent objects, and makes their triangles there, with a set-up of its own: so one command sets
+    decompositions side by side.
+
     Writes atlas.html, one page complete in itself, atlas.json, atlas.csv, and atlas.png, the map,
     to DIR.
 
@@ -89,6 +95,8 @@ def atlas_command(command_line: str, /, scenes: tuple[str, ...], cages: tuple[st
       cardcage atlas
       cardcage atlas teapot terrain --size 64x64,128x128 --nodes 2,4,8
       cardcage atlas mesh.obj --cages '4x(PMM)' --cages '4x(PMM)/8x8' --cages '4x(PMMT)'
+      cardcage atlas three_cubes --cages '4x(PMMT)' --cages '4x(PMMT)@nodes'
+      cardcage atlas crystals --cages '4x(PMM)/4x4@elements' --cages '4x(PMM)@controller'
       cardcage atlas teapot --size 64x64 --nodes 4 --fraction-bits exact --simulate
       cardcage atlas sphereflake --size 256x256 --cages '64x(16x(PM)C)' --retain --check-node
       cardcage atlas --cluster tcp://host:8786

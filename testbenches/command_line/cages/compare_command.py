@@ -53,7 +53,9 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
     All elements of one node see every triangle; nodes each draw a share of them and merge their
     pictures: in a chain (C) while the screen is scanned, in a tree (T) when drawing is done, or on
     a bus (S) to frame units (F); or each fragment goes to its memory unit directly (D).  With
-    regions, as in 4x(PMM)/8x8, elements draw the parts of the screen that a table gives them.
+    regions, as in 4x(PMM)/8x8, elements draw the parts of the screen that a table gives them.  With
+    a place behind it, as in 4x(PMMT)@nodes, 4x(PMM)/4x4@elements and 4x(PMM)@controller, a cage
+    makes the triangles of a scene file's objects there, whatever --objects asks of the others.
     Every pixel, every fragment and every pixel sent between nodes is compared with the golden
     model.  For each cage: clocks to load, draw and merge, the latency from the last triangle to the
     screen, the busiest node's share, what goes over the busiest link, memory.  All options but
@@ -69,6 +71,8 @@ def compare_command(command_line: str, /, scene: str, cards: tuple[str, ...],
       cardcage compare --cards '4x(PMM)' --cards '4x(PMMS)FF' --cards '4xPD8xM'
       cardcage compare teapot --cards '4x(PMM)' --cards '4x(PMM)/8x8' --cards '3x(PMM)/8x8'
       cardcage compare teapot --cards '4x(PMM)/1x4' --cards '4x(PMM)/2x2' --balance static
+      cardcage compare three_cubes --cards '2x(PMMT)' --cards '2x(PMMT)@nodes' --setup fast
+      cardcage compare crystals --cards '4x(PMM)@controller' --cards '4x(PMM)/4x4@elements'
       cardcage compare teapot --frames 8 --turn 45
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16
       cardcage compare sphereflake:depth=1 --nodes 1,2,4,8,16,32,64 --simulate 0

@@ -126,13 +126,19 @@ def count(counted: Counted) -> dict[str, Any]:
         ("board cells", version("amaranth"), sources_hash("golden", "hdl", "testbenches/export"),
          counted.board, repr(configuration)),
         lambda: asdict(count_cells(component_for(configuration, counted.board))))
+    return described(counted, configuration) | {
+        "cells": cells["flip_flops"] + cells["gates"] + cells["multipliers"]}
+
+
+def described(counted: Counted, configuration: MachineConfiguration) -> dict[str, Any]:
+    """What a board is, by which its cells are looked up."""
     return {
         "cage": counted.cage.label, "board": counted.board, "memory_ports": counted.ports,
         "merge": configuration.merge, "regions": configuration.regions is not None,
         "retained": counted.cage.retained, "objects": configuration.objects,
         "flat": configuration.shading == "flat", "triangle_bits": triangle_bits(configuration),
+        "coordinate_bits": configuration.coordinate_bits,
         "elements": configuration.processing_elements, "units": configuration.units,
-        "cells": cells["flip_flops"] + cells["gates"] + cells["multipliers"],
     }
 
 

@@ -52,6 +52,10 @@ def test_kinds_have_names():
     assert [kind_of(cage) for cage in (
         Cage("4x(PMM)"), Cage("PM", regions=(8, 4)), Cage("2x(PMC)", retained=True),
         Cage("PPDMM"))] == ["host broadcast", "regions 8x4", "chain, lists", "direct"]
+    assert [kind_of(Cage.named(name)) for name in (
+        "4x(PMMT)@nodes", "4x(PMM)/1x4@elements", "PM@controller")] == [
+        "tree, objects in nodes", "regions 1x4, objects in elements",
+        "host broadcast, objects in controller"]
 
 
 def test_the_files_tell_the_same(atlas, tmp_path, monkeypatch):

@@ -12,6 +12,7 @@ from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.command_line.tables.render_summary import render_summary
 from cardcage.testbenches.comparison.cage import Cage
+from cardcage.testbenches.comparison.compare_cages import CompareOptions
 from cardcage.testbenches.frames.object_figures import object_figures
 from cardcage.testbenches.machine_options import MachineOptions, machine_without_scene, option_words
 from cardcage.testbenches.render import render
@@ -57,10 +58,25 @@ def test_what_is_refused(words, said):
     (["some.scene", "--cards", "2x(PM)"], "objects: none of these cages makes triangles of objects "
      "in nodes; give one that does, such as 4x(PMMC)"),
     (["some.scene", "--cards", "2x(PMC)", "--retain"], "objects: none of these cages"),
+    (["some.scene", "--cards", "2x(PM)@controller"], "objects: none of these cages"),
+    (["some.scene", "--cards", "2x(PMC)@knots"], "'knots' is no place where triangles of objects "
+     "are made, which comes last, as in 4x(PMM)/1x4@elements; did you mean nodes?"),
+    (["some.scene", "--cards", "2x(PMC)@"], "'' is no place where triangles of objects are made"),
 ])
 def test_nothing_to_compare(words, said):
     """Before anything is simulated."""
     assert said in refusal(run, "compare", *words, "--objects", "nodes")
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["teapot", "--cards", "2x(PMC)@nodes"], "2x(PMC)@nodes: objects: only a scene file without "),
+    (["far.scene", "--cards", "PM@controller"], "PM@controller: objects: only a scene file"),
+    (["some.scene", "--cards", "PM@nodes"], "PM@nodes: objects: PM has no nodes that keep meshes"),
+    (["some.scene", "--cards", "PM@elements"], "PM@elements: objects: processing elements pass"),
+    (["some.scene", "--cards", "2x(PMC)@nodes", "--setup", "host"], "setup: the host prepares"),
+])
+def test_what_cannot_be_made_there(words, said):
+    assert said in refusal(run, "compare", *words)
 
 
 def test_what_is_planned():
@@ -119,6 +135,25 @@ def test_which_cages_of_a_comparison_make_triangles(cage, objects, made):
     assert (options.objects, options.setup) == (made, "fast")
     assert options.meshes == (4 if made else None)
     assert Cage.named(cage, retained=True).options(MachineOptions(objects=objects)).objects is None
+    # Its own name goes before what is asked of all, be there such a place or not.
+    for asked in (None, "controller", "nodes", "elements"):
+        named = Cage.named(f"{cage}@{objects}", retained=True)
+        options = named.options(MachineOptions(objects=asked, meshes=4))
+        assert (options.objects, options.setup, options.meshes, options.retain) == (
+            objects, "fast", 4, None)
+
+
+def test_the_name_of_a_cage():
+    cage = Cage.named(" 4x(PMM) / 8x4 @ elements ")
+    assert cage == Cage(" 4x(PMM)", False, (8, 4), "elements")
+    assert Cage.named("2x(PMT)@nodes") == Cage("2x(PMT)", objects="nodes")
+    for name in ("2x(PMT)@nodes", "4x(PMM)/8x4@elements", "PM@controller"):
+        assert Cage.named(name).label == name
+    options = CompareOptions(MachineOptions(), ("2x(PMC)", "2x(PMC)@nodes"), nodes=(1, 2))
+    assert [cage.label for cage in options.cages()] == ["2x(PMC)", "2x(PMC) retained",
+                                                        "2x(PMC)@nodes"]
+    assert [place.cage.label for place in options.points() if place.objects is not None] == [
+        "PMC@nodes", "2x(PMC)@nodes"]
 
 
 def test_what_the_controller_makes_is_reported(tmp_path):

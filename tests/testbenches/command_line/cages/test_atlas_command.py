@@ -60,6 +60,13 @@ def test_a_map_and_the_same_once_more(place):
     (["tetra", "--cages", "PM", "--check-node"], "--check-node"),
     (["tetra", "--cluster", "tcp://127.0.0.1:1", "--processes", "2"], "--processes"),
     (["tetra", "--engine", "none"], "engine"),
+    (["three_cubes", "--cages", "2x(PMT)@node"], "cage: 2x(PMT)@node: 'node' is no place where "
+     "triangles of objects are made, which comes last, as in 4x(PMM)/1x4@elements; did you mean "
+     "nodes?"),
+    (["tetra", "--cages", "2x(PMT)@nodes"], "no such machine can be built: objects: only a scene "
+     "file without perspective has them"),
+    (["three_cubes", "--cages", "2x(PMT)@nodes", "--check-node"], "--check-node: there is no chain "
+     "or tree with lists"),
 ])
 def test_what_is_wrong_is_one_line(arguments, words):
     assert words in refusal(run, *arguments)
@@ -68,5 +75,7 @@ def test_what_is_wrong_is_one_line(arguments, words):
 def test_help_teaches_by_example():
     text = CliRunner().invoke(main, ["atlas", "--help"]).stdout
     assert text.count("  cardcage atlas") >= 6
+    for cage in ("4x(PMMT)@nodes", "4x(PMM)/4x4@elements", "4x(PMM)@controller"):
+        assert f"--cages '{cage}'" in text
     for option in ("--cages", "--nodes", "--simulate", "--check-node", "--cluster", "--json"):
         assert option in text
