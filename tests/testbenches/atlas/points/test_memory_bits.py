@@ -16,24 +16,6 @@ CAGES = ((Cage("2x(PMM)", regions=(4, 4)), 1),
          (Cage("2x(PMC)", retained=True), 1), (Cage("2x(PMT)", retained=True), 2),
          (Cage("2x(PMMS)F"), 1), (Cage("2xPD2xM", retained=True), 2))
 
-#: Where triangles of objects are made, and what is passed on: meshes, set-up, queues of both.
-MAKING = Cage("PM", regions=(1, 2), objects="elements")
-
-
-def test_a_cage_that_makes_triangles():
-    options = MAKING.options(MachineOptions(size=(32, 32), memory_ports=2, shading="flat"))
-    listed = load_scene("crystals", options).display_list
-    configuration = plan(listed, **options.for_plan()).configuration
-    found = memories(machine_verilog(configuration))
-    parts = memory_bits(configuration)
-    bits = sum(each["words"] * each["bits"] * each["instances"] for each in found)
-    assert abs(sum(parts.values()) - bits) < ALIKE * bits
-    # Triangles, and where each mesh lies and its box.
-    meshes = sum(each["words"] * each["bits"] * each["instances"] for each in found
-                 if each["words"] in (configuration.meshes, configuration.mesh_triangles))
-    assert parts["meshes"] == meshes > 0.4 * bits
-
-
 @pytest.mark.parametrize(("cage", "ports"), CAGES, ids=str)
 def test_as_many_as_in_the_verilog(cage, ports):
     options = cage.options(MachineOptions(size=(64, 64), memory_ports=ports))

@@ -100,12 +100,16 @@ def test_no_point_is_taken_for_another(asked):
 
 
 def test_a_simulated_point(asked):
+    """Its picture and counts are golden's, or it had none.  The memories of its Verilog are all
+    that there can be: meshes and their boxes, and queues of objects, outlines and triangles; beside
+    a picture so small the bits by which queues are off weigh more than elsewhere."""
     [(_, figures)] = by_cage(measured(replace(
-        asked, cages=("PM@controller",), sizes=((8, 8),), fraction_bits=(2,), simulate=True,
+        asked, cages=("PM/1x2@elements",), sizes=((8, 8),), fraction_bits=(2,), simulate=True,
         engine="pysim")), 2).values()
     found = figures["simulated"]
     assert figures["source"] == "rtl"
     assert found["pixels_compared"] == found["depths_compared"] == 64
     assert found["fragments"] == figures["fragments"] > 10
     assert abs(figures["draw"] - found["model"]["draw"]) <= 4
-    assert np.isclose(figures["memory_bits"], found["model"]["memory_bits"], rtol=0.02)
+    assert np.isclose(figures["memory_bits"], found["model"]["memory_bits"], rtol=0.025)
+    assert figures["memory"]["meshes"] > 0.05 * figures["memory_bits"]
