@@ -203,8 +203,8 @@ def compare_cages(scene: str | Path = DEFAULT_SCENE, cards: Iterable[str] = DEFA
     with the golden model and with each other.
 
     ``scene``    a mesh file, a saved display list (``.npz``), ``hard:NAME`` or a built-in scene
-    ``cards``    a cage each; one alone may be a string; with regions as in ``4x(PMM)/8x8``, or where
-                 it makes triangles of objects as in ``4x(PMMT)@nodes``
+    ``cards``    a cage each; one alone may be a string; with regions as in ``4x(PMM)/8x8``, or with
+                 where it makes triangles of objects as in ``4x(PMMT)@nodes``
     ``out``      folder of the report; None writes none
     ``step``     is called with a few words as the work begins, and as each cage is done
     ``machine``  the fields of ``MachineOptions`` that are for all cages: ``size``,
