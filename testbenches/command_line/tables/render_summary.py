@@ -79,12 +79,12 @@ def _span(numbers: Sequence[int], one: str = "", many: str | None = None) -> str
 
 def _regions(figures: Sequence[RegionFigures]) -> str:
     """How they were dealt out, and how evenly."""
-    configuration, counted = figures[0].configuration, figures[0].counted
+    configuration, what = figures[0].configuration, figures[0].counted
     regions = configuration.dealt_regions
     shares = sorted(each.utilisation for each in figures)
     balance = {"static": "one table", "runs": "a run for each",
                "learnt": "balanced by learnt clocks, by the host"}.get(
-        figures[0].policy, f"balanced by {counted}, by the {configuration.balancer}")
+        figures[0].policy, f"balanced by {what}, by the {configuration.balancer}")
     span = (f"{100 * shares[0]:.0f} %" if len(shares) == 1 else
             f"{100 * shares[0]:.0f} to {100 * shares[-1]:.0f} %, "
             f"{100 * sum(shares) / len(shares):.0f} % on average")
