@@ -13,7 +13,6 @@ from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
 from .engines.engine import Progress
 from .frames.node_counts import golden_traffic
-from .frames.object_figures import object_figures
 from .frames.rendering import Rendering
 from .frames.setup_timing import setup_timing
 from .frames.wrong_counts import wrong_counts
@@ -106,16 +105,15 @@ class FramesJob:
             memory_seed=self.options.random_memory))
         shown = next((frame for frame in frames if not frame.equal), frames[-1])
         scene = self.lists.scene(shown.number)
-        objects = object_figures(self.configuration, scene.display_list, shown.simulation)
-        wrong = (*(f"picture {frame.number}: {line}" for frame in frames
-                   for line in wrong_counts(frame.regions)), *wrong_counts(objects))
+        wrong = tuple(f"picture {frame.number}: {line}" for frame in frames
+                      for line in wrong_counts(frame.regions, frame.objects))
         return FramesRendering(frames, Rendering(
             scene=scene, configuration=self.configuration, simulation=shown.simulation,
             comparison=shown.comparison, command_line=self.command_line,
             warnings=(*self.warnings, *shown.simulation.notes, *wrong),
             wall_seconds=time.perf_counter() - self.began, report=report,
             traffic=golden_traffic(self.configuration, scene.display_list, shown.simulation),
-            regions=shown.regions, objects=objects, wrong_counts=wrong), report)
+            regions=shown.regions, objects=shown.objects, wrong_counts=wrong), report)
 
 
 def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | None = None,

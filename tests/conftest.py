@@ -17,6 +17,10 @@ pytest.register_assert_rewrite(*(path.stem for path in LIBRARY.iterdir() if path
 # From whatever folder the tests are run, hypothesis keeps its examples in one.
 set_hypothesis_home_dir(TESTS.parent / ".hypothesis")
 
+# Machines are built of a million small objects that refer to one another: to look for garbage after
+# each 700 of them, as Python does, takes a fifth of the tests' time.
+gc.set_threshold(1_000_000, 5, 5)
+
 #: ``pytest -m quick``: golden models, components and the structure of the house, a minute or so
 #: on two cores.
 QUICK = ("golden", "hdl", "test_house.py")

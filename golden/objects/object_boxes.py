@@ -7,21 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..scenes.scene_files.object_list import ObjectList, ObjectMesh
+from ..scenes.scene_files.object_list import ObjectList
 from ..specification.regions import Regions
 
 Int64 = NDArray[np.int64]
 Bool = NDArray[np.bool_]
-
-
-def mesh_box(mesh: ObjectMesh) -> tuple[int, int, int, int]:
-    """Left, top, right and bottom of a mesh about its own origin, in sub-pixel units, both ends
-    included; of a mesh without triangles its origin."""
-    corners = mesh.position.reshape(-1, 2)
-    if not len(corners):
-        return 0, 0, 0, 0
-    (left, top), (right, bottom) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    return left, top, right, bottom
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +32,7 @@ class ObjectBoxes:
     @classmethod
     def of(cls, objects: ObjectList) -> ObjectBoxes:
         """At the highest resolution."""
-        boxes = np.array([mesh_box(mesh) for mesh in objects.meshes], np.int64).reshape(-1, 4)
-        place = objects.offset[:, :2]
-        low, high = boxes[objects.mesh, :2] + place, boxes[objects.mesh, 2:] + place
+        low, high = objects.boxes
         unit = 1 << objects.picture.sub_bits
         size = np.array([objects.picture.width, objects.picture.height])
         # The first centre that is not before the box, and the last one that is not beyond it.

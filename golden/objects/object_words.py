@@ -24,7 +24,6 @@ from ..specification.commands import (
 from ..specification.configuration import MachineConfiguration
 from ..specification.display_list import DisplayList
 from ..specification.errors import InputError
-from .object_boxes import mesh_box
 
 Int64 = NDArray[np.int64]
 Words = NDArray[np.object_]
@@ -57,7 +56,7 @@ def mesh_words(configuration: MachineConfiguration, objects: ObjectList) -> list
                              "export a machine for this scene")
     words: list[int] = []
     for mesh in objects.meshes:
-        box = dict(zip(("left", "top", "right", "bottom"), mesh_box(mesh), strict=True))
+        box = dict(zip(("left", "top", "right", "bottom"), mesh.box, strict=True))
         words.append(int(Opcode.MESH) | pack(mesh_layout(configuration), box) << BODY_OFFSET)
         values = {f"vertex_{corner}": _vertex(mesh.position[:, corner], mesh.depth[:, corner],
                                               mesh.shade[:, corner]) for corner in range(3)}

@@ -64,14 +64,17 @@ def lines_of_objects(planned: MachineConfiguration, needs: ObjectNeeds) -> list[
     places = {"controller": 1, "nodes": planned.nodes, "elements": planned.processing_elements}
     assert planned.objects is not None
     count = places[planned.objects]
-    where = "the controller" if count == 1 else f"each of {count} {planned.objects}"
+    one = {"controller": "the controller", "nodes": "the node", "elements": "the element"}
+    where = one[planned.objects] if count == 1 else f"each of {count} {planned.objects}"
+    objects = "1 object is" if needs.objects == 1 else f"{needs.objects:,} objects are"
+    meshes = "1 mesh" if needs.meshes == 1 else f"{needs.meshes:,} meshes"
     order = [PlanLine("order bits", str(planned.order_bits), "-",
                       "objects come in any order, so each pixel keeps the number of its own")
              ] if planned.keeps_list_order else []
     return [
         *order,
         PlanLine("meshes", f"{planned.meshes:,}", "-",
-                 f"{needs.objects:,} objects are {needs.meshes:,} meshes, moved"),
+                 f"{objects} {meshes}, moved"),
         PlanLine("mesh triangles", f"{planned.mesh_triangles:,}", "-",
                  f"of all meshes; {bits} bits each, {planned.mesh_triangles * bits:,} in {where}"),
     ]

@@ -16,10 +16,12 @@ from ..comparison.node_sweep import repeated, repeated_piece
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions
 from ..support.atomic_output import atomic_folder, output_errors
+from ..support.counted import counted
+from ..support.interruption import saying
 from .points.atlas_point import AtlasPoint, Failure, Figures, FractionBits
 from .points.atlas_scene import AtlasScene
 from .points.node_check import can_check_node
-from .running.sweep import Done, Sweep
+from .running.sweep import KEPT, Done, Sweep
 from .running.workers import workers_for
 
 #: Of few large triangles and of many small ones, of one layer and of several.
@@ -155,7 +157,8 @@ class Atlas:
             if not failure.failed:
                 key = point.cage.label, failure.reason
                 reasons[key] = reasons.get(key, 0) + 1
-        return [f"{label}, {count} points: {reason}" for (label, reason), count in reasons.items()]
+        return [f"{label}, {counted(count, 'point')}: {reason}"
+                for (label, reason), count in reasons.items()]
 
 
 def make_atlas(options: AtlasOptions | None = None, *, out: str | Path | None = None,
@@ -176,7 +179,7 @@ def make_atlas(options: AtlasOptions | None = None, *, out: str | Path | None = 
     out = Path(out)
     with atomic_folder(out, ATLAS_FILES) as folder:
         atlas = replace(_measured(options, command_line, bar), report=out / "atlas.html")
-        with output_errors(out, "--out"):
+        with output_errors(out, "--out"), saying(lambda: KEPT):
             write_atlas(atlas, folder)
     return atlas
 
@@ -188,7 +191,8 @@ def _measured(options: AtlasOptions, command_line: str | None,
     with ExitStack() as shown:
         done: Done = ((lambda points, label: None) if bar is None else
                       shown.enter_context(bar(len(sweep.points))))
-        found = sweep.run(done)
+        with saying(sweep.what_is_kept):
+            found = sweep.run(done)
     figures = {point: outcome for point, outcome in found.items()
                if not isinstance(outcome, Failure)}
     failures = {point: outcome for point, outcome in found.items()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..support.counted import counted
 from ..support.text_table import TextTable
 from .atlas import Atlas
 from .atlas_map import MEASURES, atlas_map, finest, winners
@@ -12,14 +13,16 @@ def headline(atlas: Atlas) -> list[str]:
     simulated = sum(figures["simulated"] is not None for figures in atlas.figures.values())
     checked = sum(figures["node_check"] is not None for figures in atlas.figures.values())
     lines = [f"FAILED: {line}" for line in atlas.differences]
-    lines.append(f"{len(atlas.figures):,} points, {len(atlas.figures) - simulated:,} by the models"
+    lines.append(f"{counted(len(atlas.figures), 'point')}, {len(atlas.figures) - simulated:,} by "
+                 "the models"
                  + (f", {simulated:,} in RTL, every picture as golden" if simulated else "")
                  + (f"; {atlas.recalled:,} remembered" if atlas.recalled else ""))
     if checked:
-        lines.append(f"one node of {checked:,} large cages in RTL, its picture, fragments and "
-                     "pixels as the models have them")
+        lines.append(f"one node of {counted(checked, 'large cage')} in RTL, its picture, fragments "
+                     "and pixels as the models have them")
     lines += [f"{MEASURES[name].best}: " + ", ".join(
-        f"{kind} {number} times" for kind, number in counts.items())
+        f"{kind} {'once' if number == 1 else f'{number:,} times'}"
+        for kind, number in counts.items())
         for name, counts in winners(atlas).items()]
     return lines
 

@@ -62,7 +62,8 @@ def check_verilog_command(
     display_list = _display_list(machine, list_file)
     _check_match(machine, display_list)
     if waveform is not None and not waveform.parent.is_dir():
-        raise InputError(f"--waveform: there is no folder {waveform.parent}")
+        raise InputError(f"--waveform: there is no folder {waveform.parent}; make it "
+                         "first")
     text = _text(verilog)
     from ..cocotb_bench.engine import CocotbEngine  # loads Amaranth
 

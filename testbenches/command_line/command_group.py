@@ -34,7 +34,8 @@ class OneLineErrors(click.Command):
 
     ``MachineError`` ends it with status 1, whatever else is raised with 2: ``InputError`` and
     ``click.ClickException``, what the system refuses (also the output, full or closed), and what
-    nobody foresaw.  ``obj`` of the context is the command line as it was typed.
+    nobody foresaw.  One that is interrupted ends with the signal's status, and says what it kept
+    where it kept something.  ``obj`` of the context is the command line as it was typed.
     """
 
     def main(self, args: Sequence[str] | None = None, prog_name: str | None = None,
@@ -60,6 +61,8 @@ class OneLineErrors(click.Command):
         except Interrupted as interruption:
             # Of hardware that was made and is not elaborated any more nobody wants to hear.
             warnings.simplefilter("ignore")
+            for note in getattr(interruption, "__notes__", ()):
+                _say(f"cardcage: interrupted: {_one_line(note)}")
             sys.exit(interruption.status)
         except click.ClickException as error:
             _fail(error.format_message(), EXIT_WRONG_INPUT)

@@ -13,6 +13,7 @@ from ...golden.planning.presets import PRESETS
 from ...golden.scene_display_list import make_display_list
 from ...golden.specification.errors import InputError
 from ..engines.verilator_tool import ToolMissingError
+from ..support.counted import counted
 from ..support.progress import busy
 from .command_options import RegionCounts
 
@@ -63,7 +64,8 @@ def engines_command(name: str, scene: str, cards: str | None, retain: bool,
              else f"built in {speed.build_seconds:.0f} s")
     click.echo(f"machine   {machine.cards}, {machine.width}x{machine.height}, "
                f"{machine.fraction_bits} fraction bits; model {built}")
-    click.echo(f"frame     {scene}: {display_list.triangles:,} triangles, {speed.cycles:,} cycles")
+    click.echo(f"frame     {scene}: {counted(display_list.triangles, 'triangle')}, "
+               f"{speed.cycles:,} cycles")
     click.echo(f"verilator {speed.verilator:12,.0f} cycles a second, whole frame, median of {runs}")
     click.echo(f"bare loop {speed.bare_loop:12,.0f} cycles a second; ratio "
                f"{speed.verilator / speed.bare_loop:.2f}")

@@ -9,6 +9,7 @@ from itertools import groupby
 from ...golden.organisations.organisation_of import organisation_of
 from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
+from ..support.counted import counted
 from ..support.text_table import TextTable, print_tables, tables_text
 from .cage import CageRun
 from .compare_cages import CageComparison
@@ -26,6 +27,10 @@ OF_OBJECTS = "objects"
 
 #: Stands for a figure that a cage does not have.
 NOTHING = "-"
+
+#: Who makes the triangles of objects.
+_PLACES: dict[str | None, str] = {
+    None: "the host", "controller": "the controller", "nodes": "nodes", "elements": "elements"}
 
 #: The rows of the table, under their headings.
 Rows = dict[str, Callable[[CageRun], str]]
@@ -84,9 +89,13 @@ FIGURES: dict[str, Rows] = {
             lambda regions: f"{int(regions.loads.max()):,} {regions.counted}"),
     },
     OF_OBJECTS: {
-        "their triangles are made in": lambda run: run.configuration.objects or "the host",
+        "their triangles are made in": lambda run: _PLACES[run.configuration.objects],
+        "triangles made": _of_objects(
+            lambda objects: f"{sum(each.made for each in objects.golden):,}"),
         "triangles made at the busiest place": _of_objects(
             lambda objects: f"{max(each.made for each in objects.golden):,}"),
+        "triangles dropped in set-up": _of_objects(
+            lambda objects: f"{sum(each.dropped for each in objects.golden):,}"),
         "words on the host link, meshes or lists included": lambda run: f"{run.link_words:,}",
     },
     "sent between nodes": {
@@ -171,10 +180,11 @@ def headline(comparison: CageComparison) -> list[str]:
         lines = [f"each as its golden picture, but {len(comparison.pictures)} pictures: "
                  + "; ".join(_picture(group) for group in comparison.pictures)]
     if any(run.views for run in runs):
-        lines.append(f"{len(next(run.views for run in runs if run.views)):,} views of it on each, "
-                     "compared likewise; figures are of the first, but for those of all")
+        views = len(next(run.views for run in runs if run.views))
+        lines.append(f"{counted(views, 'view')} of it on each, compared likewise; figures are of "
+                     "the first, but for those of all")
     listed = comparison.scene.display_list
-    return [*lines, f"{comparison.scene.name}: {listed.triangles:,} triangles at "
+    return [*lines, f"{comparison.scene.name}: {counted(listed.triangles, 'triangle')} at "
             f"{listed.width}x{listed.height}"]
 
 

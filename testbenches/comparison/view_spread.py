@@ -59,7 +59,7 @@ def _figures(configuration: MachineConfiguration, display_list: DisplayList,
     golden = merge_cage(configuration, display_list)[1]
     nodes = node_figures(configuration, display_list, simulation, golden)
     differences = [] if frame.equal else ["the picture differs from the golden one"]
-    differences += [*wrong_counts(frame.regions), *count_differences(nodes),
+    differences += [*wrong_counts(frame.regions, frame.objects), *count_differences(nodes),
                     *unit_differences(simulation, golden)]
     sent = nodes[:-1] if configuration.scans_rank else nodes  # not to the pins
     fragments = [node.fragments for node in nodes]

@@ -12,6 +12,7 @@ from ...golden.objects.object_words import made_of_objects
 from ...golden.specification.commands import Opcode, command_words, opcode_of
 from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
+from ..support.counted import counted
 from .frame_job import frame_commands
 from .responses import Simulation
 
@@ -52,21 +53,22 @@ class ObjectFigures:
     def differences(self) -> list[str]:
         """A line for each count that is not golden's."""
         found = []
-        for name, counted in (("made", self.made), ("dropped", self.dropped)):
+        for name, told in (("made", self.made), ("dropped", self.dropped)):
             wanted = [getattr(each, name) for each in self.golden]
-            if counted is None:
+            if told is None:
                 continue
-            if len(counted) != len(wanted):
-                found.append(f"{len(counted)} places say what they {name}, golden {len(wanted)}")
-            found += [f"place {place} {name} {got:,} triangles, golden {of_golden:,}"
-                      for place, (got, of_golden) in enumerate(zip(counted, wanted, strict=False))
+            if len(told) != len(wanted):
+                found.append(f"places that say what they {name}: {len(told)}, golden "
+                             f"{len(wanted)}")
+            found += [f"place {place} {name} {counted(got, 'triangle')}, golden {of_golden:,}"
+                      for place, (got, of_golden) in enumerate(zip(told, wanted, strict=False))
                       if got != of_golden]
         if self.forwarded is not None:
-            found += [f"processing element {place} passed {got[0]:,} objects left and {got[1]:,} "
-                      f"right, golden {wanted[0]:,} and {wanted[1]:,}"
+            found += [f"processing element {place} passed {counted(got[0], 'object')} left and "
+                      f"{got[1]:,} right, golden {wanted[0]:,} and {wanted[1]:,}"
                       for place, (got, wanted) in enumerate(zip(
                           self.forwarded, self.golden_forwarded, strict=True)) if got != wanted]
-        found += [f"{what} took {got:,} words on the host link, golden {wanted:,}"
+        found += [f"{what} took {counted(got, 'word')} on the host link, golden {wanted:,}"
                   for what, got, wanted in (
                       ("meshes", self.words.meshes, self.golden_words.meshes),
                       ("the frame", self.words.frame, self.golden_words.frame)) if got != wanted]

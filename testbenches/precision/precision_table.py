@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.precision.precision_study import PictureError
 from ..fpga.place_and_route import Placement
+from ..support.counted import counted
 from ..support.text_table import TextTable, print_tables, tables_text
 from .scene_precision import Precision, PrecisionRow
 
@@ -70,12 +71,13 @@ def headline(precision: Precision) -> list[str]:
     """The verdict first."""
     machine, problems = precision.machine, precision.problems()
     width, height, *_ = organisation_of(machine).resolution
-    about = (f"{precision.scene.name}: {precision.scene.display_list.triangles:,} triangles at "
-             f"{width}x{height} on {machine.cards}; exact "
+    triangles = counted(precision.scene.display_list.triangles, "triangle")
+    about = (f"{precision.scene.name}: {triangles} at {width}x{height} on {machine.cards}; exact "
              f"from {machine.fraction_bits} fraction bits")
     if problems:
         return [f"FAILED: {problem}" for problem in problems] + [about]
-    return [f"good: 0 LSB at exact, no bound exceeded at {len(precision.rows)} precisions, "
+    return [f"good: 0 LSB at exact, no bound exceeded at "
+            f"{counted(len(precision.rows), 'precision')}, "
             f"{sum(row.frame is not None for row in precision.rows)} of them simulated pixel for "
             "pixel", about]
 

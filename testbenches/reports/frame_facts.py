@@ -13,6 +13,9 @@ from ..frames.responses import Simulation
 from .object_facts import object_facts
 from .region_facts import region_facts
 
+#: What was drawn, for replay.
+DISPLAY_LIST = "display_list.npz"
+
 
 def report_facts(rendering: Rendering) -> dict[str, Any]:
     """Everything the report tells but the pictures.
@@ -24,6 +27,7 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         "equal": comparison.equal,
         "scene": rendering.scene.name,
         "command_line": rendering.command_line,
+        "replay": _replay(rendering),
         "pixels": {
             "compared": comparison.pixels_compared,
             "different": comparison.pixels_different,
@@ -64,6 +68,12 @@ def report_facts(rendering: Rendering) -> dict[str, Any]:
         "warnings": list(rendering.warnings),
         "first_difference": _first_difference(comparison.first_difference),
     }
+
+
+def _replay(rendering: Rendering) -> str | None:
+    """What draws the same again: the display list, a file beside the report; where the machine was
+    sent objects, which that does not keep, the command line, if there was one."""
+    return DISPLAY_LIST if rendering.objects is None else rendering.command_line
 
 
 def _activity(record: ActivityRecord | None) -> dict[str, Any] | None:

@@ -13,7 +13,7 @@ from ..frames.rendering import Rendering
 from ..support.any_characters import readable
 from .activity_chart import activity_chart, timeline_chart
 from .card_groups import card_groups
-from .frame_facts import report_facts
+from .frame_facts import DISPLAY_LIST, report_facts
 from .frame_pictures import color_difference, data_uri, depth_difference, depth_pictures, png
 from .page import page_environment
 from .region_pictures import load_chart, region_picture
@@ -24,7 +24,7 @@ PAGE_PICTURE_PIXELS = 320
 
 #: Everything that ``write_report`` writes.
 REPORT_FILES = ("report.html", "report.json", "rtl.png", "golden.png", "difference.png",
-                "display_list.npz")
+                DISPLAY_LIST)
 
 
 def write_report(rendering: Rendering, folder: Path) -> None:
@@ -39,7 +39,7 @@ def write_files(rendering: Rendering, folder: Path, facts: dict[str, Any], page:
     (folder / "rtl.png").write_bytes(png(rendering.simulation.video))
     (folder / "golden.png").write_bytes(png(rendering.comparison.expected))
     (folder / "difference.png").write_bytes(png(color_difference(rendering)))
-    rendering.scene.display_list.save(folder / "display_list.npz")
+    rendering.scene.display_list.save(folder / DISPLAY_LIST)
     (folder / "report.html").write_text(readable(page), encoding="utf-8")
 
 

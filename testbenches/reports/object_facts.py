@@ -14,6 +14,22 @@ def object_facts(figures: ObjectFigures | None) -> dict[str, Any] | None:
         return None
     return {
         "place": figures.configuration.objects,
+        **object_summary(figures),
+        "per_place": [
+            {"objects": golden.objects, "golden_made": golden.made,
+             "golden_dropped": golden.dropped, "sent": golden.sent,
+             **({} if figures.made is None or figures.dropped is None else {
+                 "made": figures.made[place], "dropped": figures.dropped[place]}),
+             **_forwarded(figures, place)}
+            for place, golden in enumerate(figures.golden)],
+        "differences": figures.differences,
+    }
+
+
+def object_summary(figures: ObjectFigures) -> dict[str, Any]:
+    """In a few numbers, as there may be many pictures: what the host sent, what all places made and
+    dropped, None where the machine was not asked, and whether all is golden's."""
+    return {
         "objects": figures.objects,
         "clipped": figures.clipped,
         "meshes": figures.meshes,
@@ -22,15 +38,11 @@ def object_facts(figures: ObjectFigures | None) -> dict[str, Any] | None:
         "golden_link_words": asdict(figures.golden_words) | {"total": figures.golden_words.total},
         "link_words_of_triangles": figures.triangle_words,
         "read": figures.made is not None,
-        "per_place": [
-            {"objects": golden.objects, "golden_made": golden.made,
-             "golden_dropped": golden.dropped, "sent": golden.sent,
-             **({} if figures.made is None or figures.dropped is None else {
-                 "made": figures.made[place], "dropped": figures.dropped[place]}),
-             **_forwarded(figures, place)}
-            for place, golden in enumerate(figures.golden)],
+        "made": None if figures.made is None else sum(figures.made),
+        "dropped": None if figures.dropped is None else sum(figures.dropped),
+        "golden_made": sum(each.made for each in figures.golden),
+        "golden_dropped": sum(each.dropped for each in figures.golden),
         "equal": not figures.differences,
-        "differences": figures.differences,
     }
 
 

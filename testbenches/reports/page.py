@@ -12,19 +12,23 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ..support.counted import counted
+
 #: Stands for the page's own text colour, which follows the reader's light or dark setting.
 _TEXT_COLOR = "#010203"
 
 
 def page_environment() -> Environment:
-    """Where the page templates are; a value that is missing is an error."""
-    return Environment(
+    """Where the page templates are, which know ``counted``; a value that is missing is an error."""
+    environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent / "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals["counted"] = counted
+    return environment
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from ...golden.scenes.camera import View
 from ..frames.rendering import Rendering
 from ..sequence.sequence_run import SequenceFrame
 from .frame_facts import report_facts
+from .object_facts import object_summary
 from .region_facts import region_summary
 
 
@@ -17,6 +18,7 @@ def sequence_facts(rendering: Rendering, frames: Sequence[SequenceFrame], views:
     """What the report of one picture tells, of ``rendering``, with the verdict on all of them, and
     under ``frames`` the figures of each."""
     facts = report_facts(rendering)
+    facts["replay"] = rendering.command_line  # the display list is of one picture
     comparisons = [frame.comparison for frame in frames]
     facts["equal"] = all(frame.equal for frame in frames)
     facts["pixels"] |= {
@@ -69,4 +71,5 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
                    for element in work],
         "sent": list(simulation.sent),
         "regions": None if frame.regions is None else region_summary(frame.regions),
+        "objects": None if frame.objects is None else object_summary(frame.objects),
     }

@@ -12,6 +12,7 @@ from ...golden.scenes.camera import View
 from ...golden.specification.display_list import DisplayList
 from ...golden.specification.errors import InputError
 from ..machine_options import MachineOptions, load_scene
+from ..support.counted import counted
 from .frame_views import DEFAULT_TURN, MOST_FRAMES, read_path, turning
 
 #: Lists that are kept: the one that is drawn, and those that are prepared meanwhile.
@@ -75,7 +76,8 @@ def _views(loaded: LoadedScene, options: MachineOptions, frames: int | None, tur
     if path is not None:
         views = read_path(path)
         if frames is not None and frames != len(views):
-            raise InputError(f"--frames: {frames}, but {path} has {len(views)} views; leave it out")
+            raise InputError(f"--frames: {frames}, but {path} has "
+                             f"{counted(len(views), 'view')}; leave it out")
         return views
     if frames is None or not 1 <= frames <= MOST_FRAMES:
         raise InputError(f"--frames: must be 1 to {MOST_FRAMES:,}, not {frames}")

@@ -28,6 +28,7 @@ from ..engines.engine import EngineRun, Job, Progress
 from ..frames.compare import Comparison, compare
 from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
+from ..frames.object_figures import ObjectFigures, object_figures
 from ..frames.region_figures import RegionFigures, RegionTables
 from ..frames.region_host import region_readings
 from ..frames.responses import NOT_READ, Answers, MachineError, Simulation
@@ -102,6 +103,7 @@ class SequenceFrame:
     ``wrong_scans`` those of them that do not show the golden picture
     ``shown``       the clock in which the machine said that it is shown
     ``regions``     what its regions cost; None where none are dealt out
+    ``objects``     what was made of its objects; None where the machine takes none
     """
 
     number: int
@@ -113,6 +115,7 @@ class SequenceFrame:
     wrong_scans: int
     shown: int
     regions: RegionFigures | None = None
+    objects: ObjectFigures | None = None
 
     @property
     def equal(self) -> bool:
@@ -181,4 +184,5 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
                      for scan in seen]
         yield SequenceFrame(number, display_list.triangles, simulation, comparison, seen[0],
                             len(seen), sum(map(bool, map(np.any, different))), shown[number][1],
-                            None if tables is None else tables.figures(number, simulation))
+                            None if tables is None else tables.figures(number, simulation),
+                            object_figures(configuration, display_list, simulation))

@@ -41,16 +41,15 @@ def atomic_folder(target: Path, names: Collection[str], option: str = "--out") -
 def atomic_file(target: Path, option: str) -> Iterator[Path]:
     """A temporary name for one file, which is moved to ``target`` when the block ends.
 
-    The folder of ``target`` must exist.  Otherwise as ``atomic_folder``.
+    Folders on the way to ``target`` are made then, as by ``atomic_folder``; otherwise as there.
     """
     with output_errors(target, option):
         _check_replaceable(target, option)
-        if not target.parent.is_dir():
-            raise InputError(f"{option}: {target}: there is no folder {target.parent}; make it "
-                             "first")
-    with _temporary_folder(target.parent, target, option) as temporary:
+        place = _nearest_existing(target.parent)
+    with _temporary_folder(place, target, option) as temporary:
         yield temporary / target.name
         with output_errors(target, option), uninterrupted():
+            target.parent.mkdir(parents=True, exist_ok=True)
             (temporary / target.name).replace(target)
 
 

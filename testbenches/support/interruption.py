@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -80,6 +80,16 @@ def interruptible() -> Iterator[None]:
         return
     with _again_if_swallowed(), _handlers(_raise):
         yield
+
+
+@contextmanager
+def saying(kept: Callable[[], str]) -> Iterator[None]:
+    """A command that is interrupted within ends with a line: what ``kept`` says is left of it."""
+    try:
+        yield
+    except Interrupted as interruption:
+        interruption.add_note(kept())
+        raise
 
 
 @contextmanager

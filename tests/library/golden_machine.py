@@ -1,9 +1,11 @@
-"""A machine that deals out regions, as the golden models say it answers: in an engine's place."""
+"""A machine that deals out regions, of triangles or of objects that are passed on, as the golden
+models say it answers: in an engine's place."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from cardcage.golden.objects.forwarding import forwarded_objects, made_at_elements
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.region_table import packed_table, static_table
 from cardcage.golden.reference import exact
@@ -35,7 +37,8 @@ class _Run:
         self.machine, self.job, c = machine, job, job.configuration
         self.configuration, self.organisation = c, organisation_of(c)
         self.responses, self.scans, self.accepted = [], [], []
-        self.table = static_table(c.dealt_regions.count, c.processing_elements)
+        self.table = (self.organisation.table if c.forwards_objects else
+                      static_table(c.dealt_regions.count, c.processing_elements))
         self.heard, self.next_table = [], self.table
         self.cycle = 1
         self.picture = np.zeros((c.height, c.width, 3), np.uint8)
@@ -111,9 +114,18 @@ class _Run:
         dealt = self.organisation.dealt(self.table)
         y, x = np.mgrid[:complexity.shape[0], :complexity.shape[1]]
         owner = dealt.owners[0, dealt.unit(x, y)]
-        for element in range(self.configuration.processing_elements):
+        c = self.configuration
+        made = made_at_elements(c, self.list) if c.forwards_objects else []
+        passed = forwarded_objects(c, self.list) if c.forwards_objects else None
+        for element in range(c.processing_elements):
             self.answer(ResponseKind.FRAGMENTS, complexity[owner == element].sum())
             self.answer(ResponseKind.BUSY, 5)
+            if passed is not None:
+                self.answer(ResponseKind.MADE, made[element].made)
+                self.answer(ResponseKind.DROPPED, made[element].dropped)
+                self.answer(ResponseKind.FORWARDED, commands.response_value(
+                    ResponseKind.FORWARDED, left=int(passed.left[element]),
+                    right=int(passed.right[element])))
 
     def read_regions(self, word):
         for count in of_slots(self.configuration, self.table, self.counts).ravel():

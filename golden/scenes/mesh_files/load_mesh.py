@@ -87,7 +87,8 @@ def _contents(source: Path) -> bytes:
     except InputError:
         raise
     except (OSError, ValueError, MemoryError) as error:
-        raise InputError(f"{source}: file: cannot be read ({_reason(error)})") from None
+        raise InputError(f"{source}: file: cannot be read ({_reason(error)}); make it readable, or "
+                         "name another file") from None
     if not data:
         raise InputError(f"{source}: contents: the file is empty; export the mesh again")
     return data

@@ -40,8 +40,9 @@ class Reading:
 
 
 def contents_error(text: str) -> InputError:
-    """What is wrong with the contents of a file; ``load_mesh`` puts the file's name in front."""
-    return InputError(f"mesh: contents: {text}")
+    """What is wrong with the contents of a file; ``load_mesh`` puts the file's name in front.  The
+    remedy is behind a semicolon; where ``text`` has none, another export."""
+    return InputError(f"mesh: contents: {text if ';' in text else f'{text}; export it again'}")
 
 
 def check_indices(corners: NDArray[np.int64], vertex_count: int) -> None:

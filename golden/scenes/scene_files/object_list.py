@@ -35,6 +35,16 @@ class ObjectMesh:
     def triangles(self) -> int:
         return len(self.depth)
 
+    @property
+    def box(self) -> tuple[int, int, int, int]:
+        """Left, top, right and bottom about its own origin, both ends included; of a mesh without
+        triangles its origin."""
+        corners = self.position.reshape(-1, 2)
+        if not len(corners):
+            return 0, 0, 0, 0
+        (left, top), (right, bottom) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+        return left, top, right, bottom
+
     def facing(self) -> ObjectMesh:
         """Only what faces the eye, which is so wherever the object is."""
         keep = facing(self.position.astype(np.int32))
@@ -62,16 +72,20 @@ class ObjectList:
 
     @property
     def clipped(self) -> NDArray[np.bool_]:
-        """bool (n,): some vertex lies outside the guard band."""
-        if not len(self.mesh):
-            return np.zeros(0, bool)
-        corners = [mesh.position.reshape(-1, 2) for mesh in self.meshes]
-        low = np.array([corner.min(axis=0, initial=0) for corner in corners])
-        high = np.array([corner.max(axis=0, initial=0) for corner in corners])
+        """bool (n,): some vertex lies outside the guard band; of a mesh without triangles, its
+        origin.  Of others that may lie anywhere: an offset is added modulo the fields of a vertex,
+        and sums that fit there are exact."""
+        low, high = self.boxes
         band = self.picture.guard_band << self.picture.sub_bits
+        return np.asarray(((low < -band) | (high >= band)).any(axis=1))
+
+    @property
+    def boxes(self) -> tuple[Int64, Int64]:
+        """int64 (n, 2) each: left and top, right and bottom of every object where it is, both ends
+        included."""
+        boxes = np.array([mesh.box for mesh in self.meshes], np.int64).reshape(-1, 4)[self.mesh]
         place = self.offset[:, :2]
-        return np.asarray(((place + low[self.mesh] < -band)
-                           | (place + high[self.mesh] >= band)).any(axis=1))
+        return boxes[:, :2] + place, boxes[:, 2:] + place
 
     def in_sub_bits(self, sub_bits: int) -> ObjectList:
         """The same objects in units of ``2**-sub_bits`` pixel.  ``InputError`` where a vertex of a

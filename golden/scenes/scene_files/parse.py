@@ -118,7 +118,8 @@ class _Parser:
         if kind == MESH:
             if not words:
                 raise self._wrong(rest[0], "mesh has no file; write one, as in: obj mesh a.obj")
-            values["path"] = self._path.parent / words.pop(0).text
+            file = words.pop(0)
+            values |= {"path": self._path.parent / file.text, "column": file.column}
         places: dict[str, _Token] = {}
         for name, value in zip(words[::2], [*words[1::2], None], strict=False):
             word = OBJECT_WORDS.get(name.text.lower())

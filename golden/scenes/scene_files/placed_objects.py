@@ -66,6 +66,8 @@ def placed_objects(description: SceneDescription, most_triangles: int) -> Placed
                 mesh_of_kind = _scaled(_unit_mesh(definition), np.array(definition.scale))
                 meshes.append(turned(mesh_of_kind, _rotation(definition.rotation)))
             except InputError as error:
+                if definition.column is not None:
+                    where += f", column {definition.column}"
                 raise InputError(f"{where}: {error}") from None
         triangles += definition.number * meshes[numbers[key]].triangles
         _check_triangles(where, triangles, most_triangles)

@@ -19,6 +19,9 @@ from ..points.atlas_point import AtlasPoint, Failure
 from ..points.measure import Batch, Outcome, batches, measure
 from .workers import Workers
 
+#: What becomes of an interrupted sweep.
+KEPT = "what was measured is kept; the same command goes on from there"
+
 #: Told of points that are there: how many, and of which batch.
 Done = Callable[[int, str], None]
 
@@ -56,6 +59,12 @@ class Sweep:
                 working.enter_context(self._workers)
                 self._measure_all(batches(missing, self._release), done)
         return {point: self.found[point] for point in self.points}
+
+    def what_is_kept(self) -> str:
+        """For who interrupts it."""
+        return KEPT if self.not_kept is None else (
+            f"some results could not be kept ({self.not_kept}); the same command measures those "
+            "again")
 
     def key(self, point: AtlasPoint) -> tuple[str, ...]:
         """All that the point's figures depend on."""

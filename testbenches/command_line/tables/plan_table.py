@@ -10,6 +10,7 @@ from rich.table import Table
 from ....golden.organisations.organisation_of import organisation_of
 from ....golden.planning.machine_plan import triangle_bits
 from ....golden.specification.configuration import MachineConfiguration
+from ...support.counted import counted
 from .scene_plan import CYCLE_ACCURACY, ScenePlan
 
 _COLUMNS = ("", "plan", "full", "saves", "because")
@@ -42,7 +43,7 @@ def plan_table(planned: ScenePlan) -> None:
 
 def _title(planned: ScenePlan) -> str:
     machine = planned.plan.configuration
-    return (f"{planned.scene.name}: {planned.plan.needs.triangles:,} triangles at "
+    return (f"{planned.scene.name}: {counted(planned.plan.needs.triangles, 'triangle')} at "
             f"{machine.width}x{machine.height}; full is a machine for every triangle on that "
             "screen")
 
@@ -73,9 +74,9 @@ def _summary(planned: ScenePlan) -> list[str]:
         f"({_accuracy(machine)})",
     ]
     if planned.cells is not None:
-        counted, full = map(asdict, planned.cells)
+        needed, full = map(asdict, planned.cells)
         lines.append("cells of a processing element: " + ", ".join(
-            f"{counted[name]:,} instead of {full[name]:,} {text}" for name, text in (
+            f"{needed[name]:,} instead of {full[name]:,} {text}" for name, text in (
                 ("flip_flops", "flip-flops"), ("gates", "gates"),
                 ("multipliers", "multiplier bits"), ("memory", "bits of FIFO"))))
     return [*lines, f"draw it: {planned.command}"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ....golden.organisations.organisation_of import organisation_of
 from ...frames.compare import FirstDifference
@@ -10,6 +10,7 @@ from ...frames.object_figures import ObjectFigures
 from ...frames.region_figures import RegionFigures
 from ...frames.rendering import Rendering
 from ...render_frames import FramesRendering
+from ...support.counted import counted
 
 
 def render_summary(rendering: Rendering) -> str:
@@ -18,12 +19,12 @@ def render_summary(rendering: Rendering) -> str:
     width, height, *_ = organisation_of(configuration).resolution
     lines = [
         _verdict(rendering),
-        _line("scene", f"{rendering.scene.name}: {rendering.scene.display_list.triangles:,} "
-              f"triangles, {rendering.fragments:,} fragments at "
-              f"{width}x{height}"),
+        _line("scene", f"{rendering.scene.name}: "
+              f"{counted(rendering.scene.display_list.triangles, 'triangle')}, "
+              f"{counted(rendering.fragments, 'fragment')} at {width}x{height}"),
         _line("machine", f"{configuration.cards}, {_precision(rendering)}"),
         *([] if rendering.regions is None else [_line("regions", _regions([rendering.regions]))]),
-        *([] if rendering.objects is None else [_line("objects", _objects(rendering.objects))]),
+        *([] if rendering.objects is None else [_line("objects", _objects([rendering.objects]))]),
         _line("cycles", f"{simulation.boot_cycles:,} to boot, {simulation.draw_cycles:,} to draw"
               + ("" if simulation.merge_cycles is None else
                  f", {simulation.merge_cycles - simulation.draw_cycles:,} to merge") + "; "
@@ -66,37 +67,53 @@ def _precision(rendering: Rendering) -> str:
 def _first(difference: FirstDifference) -> str:
     expected, got = difference.expected, difference.got
     return (f"pixel {difference.pixel}: expected colour {expected.color} depth {expected.depth}, "
-            f"got {got.color} depth {got.depth}; {len(difference.fragments)} fragments fell on it")
+            f"got {got.color} depth {got.depth}; "
+            f"{counted(len(difference.fragments), 'fragment')} fell on it")
+
+
+def _span(numbers: Sequence[int], one: str = "", many: str | None = None) -> str:
+    """From the least to the greatest of these, of things if it is said of what."""
+    least = f"{min(numbers):,} to " if min(numbers) < max(numbers) else ""
+    return least + (counted(max(numbers), one, many) if one else f"{max(numbers):,}")
 
 
 def _regions(figures: Sequence[RegionFigures]) -> str:
     """How they were dealt out, and how evenly."""
-    configuration, counted = figures[0].configuration, figures[0].counted
+    configuration, what = figures[0].configuration, figures[0].counted
     regions = configuration.dealt_regions
     shares = sorted(each.utilisation for each in figures)
     balance = {"static": "one table", "runs": "a run for each",
                "learnt": "balanced by learnt clocks, by the host"}.get(
-        figures[0].policy, f"balanced by {counted}, by the {configuration.balancer}")
+        figures[0].policy, f"balanced by {what}, by the {configuration.balancer}")
     span = (f"{100 * shares[0]:.0f} %" if len(shares) == 1 else
             f"{100 * shares[0]:.0f} to {100 * shares[-1]:.0f} %, "
             f"{100 * sum(shares) / len(shares):.0f} % on average")
     wrong = sum(bool(each.differences) for each in figures)
     return (f"{regions.columns}x{regions.rows} of {1 << regions.x_bits}x{1 << regions.y_bits} "
             f"pixels, {balance}; utilisation {span}"
-            + (f"; COUNTS DIFFER in {wrong:,} pictures" if wrong else ""))
+            + (f"; COUNTS DIFFER in {counted(wrong, 'picture')}" if wrong else ""))
 
 
-def _objects(figures: ObjectFigures) -> str:
-    """What was sent and made."""
-    made = [each.made for each in figures.golden]
-    return (f"{figures.objects:,} of {figures.meshes:,} meshes, {sum(made):,} triangles made "
-            f"in {len(made)} {figures.configuration.objects}"
-            + (f", {sum(map(sum, figures.golden_forwarded)):,} times passed on"
-               if figures.golden_forwarded else "")
-            + (f", {figures.clipped:,} objects sent as triangles" if figures.clipped else "")
-            + f"; {figures.words.total:,} words on the host link, {figures.words.meshes:,} of them "
-            f"meshes, instead of {figures.triangle_words:,}"
-            + ("; COUNTS DIFFER" if figures.differences else ""))
+def _objects(figures: Sequence[ObjectFigures]) -> str:
+    """What was sent and made, of each picture."""
+    def of(figure: Callable[[ObjectFigures], int], one: str = "", many: str | None = None) -> str:
+        return _span([figure(each) for each in figures], one, many)
+
+    first = figures[0]
+    place = {"nodes": counted(len(first.golden), "node"), "controller": "the controller",
+             "elements": counted(len(first.golden), "element")}[str(first.configuration.objects)]
+    passed = of(lambda each: sum(map(sum, each.golden_forwarded)), "time")
+    clipped = of(lambda each: each.clipped, "object")
+    wrong = sum(bool(each.differences) for each in figures)
+    return (f"{of(lambda each: each.objects)} of {of(lambda each: each.meshes, 'mesh', 'meshes')}, "
+            f"{of(lambda each: sum(place.made for place in each.golden), 'triangle')} made in "
+            f"{place}"
+            + (f", {passed} passed on" if first.golden_forwarded else "")
+            + (f", {clipped} sent as triangles" if any(each.clipped for each in figures) else "")
+            + f"; {of(lambda each: each.words.total, 'word')} on the host link, "
+            f"{of(lambda each: each.words.meshes)} of them meshes, instead of "
+            f"{of(lambda each: each.triangle_words)}"
+            + (f"; COUNTS DIFFER in {counted(wrong, 'picture')}" if wrong else ""))
 
 
 def frames_summary(rendering: FramesRendering) -> str:
@@ -105,28 +122,30 @@ def frames_summary(rendering: FramesRendering) -> str:
     pixels = sum(frame.comparison.pixels_compared for frame in frames)
     depths = sum(frame.comparison.depths_compared for frame in frames)
     wrong = [frame.number for frame in frames if not frame.equal]
-    verdict = (f"equal: {len(frames):,} pictures, {pixels:,} colours and {depths:,} depths "
-               "compared, 0 different")
+    verdict = (f"equal: {counted(len(frames), 'picture')}, {pixels:,} colours and {depths:,} "
+               "depths compared, 0 different")
     if wrong:
-        verdict = f"DIFFERENT: {len(wrong):,} of {len(frames):,} pictures, first picture {wrong[0]}"
+        verdict = (f"DIFFERENT: {len(wrong):,} of {counted(len(frames), 'picture')}, first picture "
+                   f"{wrong[0]}")
     draw = [frame.simulation.draw_cycles for frame in frames]
     scans = [frame.scans for frame in frames[:-1]]
     simulation = shown.simulation
     lines = [
         verdict,
-        _line("scene", f"{shown.scene.name}: {min(frame.triangles for frame in frames):,} to "
-              f"{max(frame.triangles for frame in frames):,} triangles"),
+        _line("scene", f"{shown.scene.name}: "
+              f"{_span([frame.triangles for frame in frames], 'triangle')}"),
         _line("machine", f"{shown.configuration.cards}, {_precision(shown)}"),
         *([] if shown.regions is None else [_line("regions", _regions(
             [frame.regions for frame in frames if frame.regions is not None]))]),
-        *([] if shown.objects is None else [_line("objects", _objects(shown.objects))]),
-        _line("cycles", f"{min(draw):,} to {max(draw):,} to draw a picture; {simulation.cycles:,} "
-              f"simulated by {simulation.engine} in {simulation.seconds:.1f} s"
+        *([] if shown.objects is None else [_line("objects", _objects(
+            [frame.objects for frame in frames if frame.objects is not None]))]),
+        _line("cycles", f"{_span(draw)} to draw a picture; {simulation.cycles:,} simulated "
+              f"by {simulation.engine} in {simulation.seconds:.1f} s"
               + (f", after {simulation.build_seconds:.0f} s of compiling the model"
                  if simulation.build_seconds else "")),
     ]
     if scans:
-        lines.append(_line("shown", f"{min(scans)} to {max(scans)} scans each but the last; "
+        lines.append(_line("shown", f"{_span(scans, 'scan')} each but the last; "
                            f"{scans.count(1):,} of {len(scans):,} on one scan, which is the "
                            "least"))
     if shown.comparison.first_difference is not None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cardcage.golden.objects.forwarded_objects import ForwardedObjects
-from cardcage.golden.objects.object_boxes import ObjectBoxes, mesh_box
+from cardcage.golden.objects.object_boxes import ObjectBoxes
 from cardcage.golden.organisations.region_table import runs_table
 from cardcage.golden.reference.exact import draw
 from cardcage.golden.scenes.quantise import PictureFormat
@@ -41,7 +41,7 @@ def test_no_object_covers_a_pixel_outside_its_box_and_no_box_is_wider_than_its_c
                          *(getattr(objects, name)[[number]] for name in (
                              "mesh", "offset", "color")))
         covered = draw(one.display_list()).winner >= 0
-        left, top, right, bottom = mesh_box(objects.meshes[objects.mesh[number]])
+        left, top, right, bottom = objects.meshes[objects.mesh[number]].box
         centre = np.stack([x, y], axis=-1) * 4 + 2 - objects.offset[number, :2]
         inside = ((centre >= [left, top]) & (centre <= [right, bottom])).all(axis=-1)
         assert inside[covered].all()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from object_bench.objects import from_far
 
 from cardcage.golden.objects.making import link_words, made_at_controller, made_at_nodes
 from cardcage.golden.objects.object_words import frame_words, made_of_objects, mesh_words
@@ -128,6 +129,22 @@ def test_words_on_the_link_are_those_of_the_commands(scene):
     listed = fitted(configuration, scene)
     assert words.meshes == each * (1 + len(mesh_words(configuration, scene.objects)))
     assert words.frame == each * (2 + len(frame_words(configuration, listed)))
+
+
+def test_where_the_origin_of_a_mesh_lies_changes_no_word_count_and_no_picture(scene):
+    """Only vertices count: an origin out of the guard band makes nothing clipped."""
+    configuration = machine()
+    far = from_far(scene.objects, 5 << configuration.coordinate_bits - 2, -5000)
+    listed = far.display_list()
+    assert far.clipped.tolist() == scene.objects.clipped.tolist()
+    assert abs(far.offset[:, 0]).min() >= 1 << configuration.coordinate_bits - 1
+    np.testing.assert_array_equal(listed.position, scene.position)
+    assert link_words(configuration, listed) == link_words(configuration, scene)
+    words = [*mesh_words(configuration, far), *frame_words(configuration, listed)]
+    position, depth, *_ = decoded(configuration, words)
+    order = organisation_of(configuration).shares(listed).host_order
+    np.testing.assert_array_equal(position, listed.position[order])
+    np.testing.assert_array_equal(depth, listed.depth[order])
 
 
 def test_objects_that_are_halved_stay_whole():

@@ -6,7 +6,7 @@ from amaranth.hdl import Elaboratable, Module
 from amaranth.lib import wiring
 from hdl_bench.bench import Agent, simulate
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
-from object_bench.objects import object_commands, object_machine, random_objects
+from object_bench.objects import from_far, object_commands, object_machine, random_objects
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification import commands
@@ -97,6 +97,14 @@ def test_random_objects_under_stalls(shading, seed):
     configuration = object_machine(shading=shading, packet=2)
     objects = random_objects(configuration, 40, seed)
     run(configuration, objects, (pauses(f"objects {seed}"), pauses(f"triangles {seed}")))
+
+
+def test_meshes_whose_origins_lie_out_of_the_guard_band():
+    configuration = object_machine()
+    objects = from_far(random_objects(configuration, 20, 7, triangles=(1, 2, 3)),
+                       3 << configuration.coordinate_bits - 2, -200)
+    assert not objects.clipped.any()
+    run(configuration, objects)
 
 
 def test_latency_and_a_triangle_a_clock():

@@ -53,6 +53,13 @@ def random_objects(configuration, objects, seed, triangles=(0, 1, 2, 3, 7), *, w
                       pick.integers(0, 256, (objects, 3)).astype(np.uint8))
 
 
+def from_far(objects, x, y):
+    """The same objects, of meshes that lie so far from their own origins, in sub-pixel units."""
+    away = np.array([x, y])
+    return replace(objects, offset=objects.offset - [x, y, 0], meshes=tuple(
+        replace(mesh, position=mesh.position + away) for mesh in objects.meshes))
+
+
 def object_word(word):
     """A command, as it is broadcast to those who make triangles of objects: operation below body,
     as in ``object_word_layout``."""

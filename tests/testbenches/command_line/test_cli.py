@@ -278,7 +278,7 @@ def test_unwritable_output_is_found_before_the_simulation(place, engine):
     Path("file").write_text("")
     Path("report/report.json").mkdir(parents=True)
     for arguments in (["--out", "file"], ["--out", "file/below"], ["--out", "report"],
-                      ["--waveform", "missing/wave.vcd"], ["--waveform", "."],
+                      ["--waveform", "file/wave.vcd"], ["--waveform", "."],
                       ["--waveform", os.devnull]):
         assert arguments[0] in refuses("render", SCENE, *TINY, *arguments)
 

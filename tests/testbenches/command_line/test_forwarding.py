@@ -81,7 +81,7 @@ def test_what_is_drawn_and_reported(tmp_path):
     assert "objects passed left" in (tmp_path / "out" / "report.html").read_text()
     summary = render_summary(rendering)
     assert "a run for each" in summary
-    assert f"made in 2 elements, {sum(map(sum, passed))} times passed on, 1 objects" in summary
+    assert f"made in 2 elements, {sum(map(sum, passed))} times passed on, 1 object " in summary
     # Counts that are not golden's are told.
     wrong = replace(rendering.simulation, forwarded=[(0, 9), *map(tuple, passed[1:])])
     [line] = object_figures(rendering.configuration, rendering.scene.display_list,

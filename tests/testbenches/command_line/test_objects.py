@@ -5,17 +5,24 @@ from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
+from golden_machine import GoldenMachine
 from refusals import refusal
 
 from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.specification.commands import ResponseKind
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.command_line.cli import main
-from cardcage.testbenches.command_line.tables.render_summary import render_summary
+from cardcage.testbenches.command_line.tables.render_summary import frames_summary, render_summary
 from cardcage.testbenches.comparison.cage import Cage
 from cardcage.testbenches.comparison.compare_cages import CompareOptions
+from cardcage.testbenches.engines import choose_engine
 from cardcage.testbenches.frames.object_figures import object_figures
 from cardcage.testbenches.machine_options import MachineOptions, machine_without_scene, option_words
 from cardcage.testbenches.render import render
+from cardcage.testbenches.render_frames import render_frames
+from cardcage.testbenches.reports.frame_facts import report_facts
+from cardcage.testbenches.reports.frame_report import report_page
+from cardcage.testbenches.sequence.scene_frames import SceneFrames
 
 SCENE = ("obj cube scale 0.5 rot 20,30,0 num 3 seed 2 color random\n"
          "obj cone scale 3 position 2,1,0 recursion 0\n")
@@ -107,22 +114,73 @@ def test_what_is_drawn_and_reported(tmp_path):
     rendering = render("some.scene", out=tmp_path / "out", cards="2x(PMC)", size=(8, 6),
                        packet=1, objects="nodes")
     assert rendering.comparison.equal and not rendering.warnings
-    found = json.loads((tmp_path / "out" / "report.json").read_text())["objects"]
+    facts = json.loads((tmp_path / "out" / "report.json").read_text())
+    found = facts["objects"]
     assert found["equal"] and found["read"] and found["clipped"] == 1
+    assert found["made"] == found["golden_made"] == 36
     assert [place["made"] for place in found["per_place"]] == [
         place["golden_made"] for place in found["per_place"]]
     assert found["link_words"] == found["golden_link_words"]
-    assert "Made in node 1" in (tmp_path / "out" / "report.html").read_text()
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "Made in node 1<" in page
+    # The display list has no objects: it would not draw the same again.
+    assert facts["replay"] is facts["command_line"] is None
+    assert "to replay" not in page and "keeps no objects" in page and "the scene file.<" in page
+    again = report_page(rendering, report_facts(replace(rendering, command_line="cardcage ABC")))
+    assert "draws the same again is <code>cardcage ABC</code> with the scene file" in again
     line = next(line for line in render_summary(rendering).splitlines() if "objects " in line)
-    assert "4 of 2 meshes, 36 triangles made in 2 nodes, 1 objects sent as triangles" in line
+    assert "4 of 2 meshes, 36 triangles made in 2 nodes, 1 object sent as triangles" in line
     # Counts that are not golden's are told.
     wrong = replace(rendering.simulation, made=[24, 13], dropped=[9])
     figures = object_figures(rendering.configuration, rendering.scene.display_list, wrong)
     figures = replace(figures, words=replace(figures.words, frame=1))
     made = [each.made for each in figures.golden]
     assert figures.differences[0] == f"place 1 made 13 triangles, golden {made[1]}"
-    assert "1 places say what they dropped, golden 2" in figures.differences
-    assert "the frame took 1 words on the host link" in figures.differences[-1]
+    assert "places that say what they dropped: 1, golden 2" in figures.differences
+    assert "the frame took 1 word on the host link" in figures.differences[-1]
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Two pictures of the scene on a machine that answers as golden says, but for ``change``."""
+    def draw(out=None, change=lambda kind, number, value: value):
+        asked = {"size": (12, 8), "depth": "all"}
+        lists = SceneFrames("some.scene", MachineOptions(size=asked["size"]), frames=2, turn=40,
+                            path=None)
+        monkeypatch.setattr(choose_engine, "ENGINES",
+                            {"golden": lambda: GoldenMachine(lists, change)})
+        return render_frames("some.scene", out=out, frames=2, turn=40, cards="2x(PM)",
+                             objects="elements", regions=(2, 2), engine="golden", **asked)
+
+    return draw
+
+
+def test_several_pictures_are_reported_each_with_its_objects(drawn, tmp_path):
+    rendering = drawn(tmp_path / "out")
+    assert rendering.equal and not rendering.shown.warnings
+    facts = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert facts["replay"] is None
+    words = []
+    for frame, each in zip(facts["frames"], rendering.frames, strict=True):
+        found = frame["objects"]
+        assert found["equal"] and found["made"] == sum(each.simulation.made) > 30
+        assert found["dropped"] == sum(each.simulation.dropped) == found["golden_dropped"]
+        assert found["objects"] == 4 and found["link_words"] == found["golden_link_words"]
+        words.append(found["link_words"]["total"])
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "Words on the host link</th>" in page
+    assert all(f'<td class="number">{number:,}</td>' in page for number in words)
+    assert "picture 1 alone, without its objects" in " ".join(page.split())
+    line = next(line for line in frames_summary(rendering).splitlines() if "objects " in line)
+    assert "4 of 2 meshes, " in line and " triangles made in 2 elements, " in line
+
+
+def test_a_wrong_count_of_any_picture_is_told(drawn):
+    rendering = drawn(change=lambda kind, number, value: (
+        value + (kind == ResponseKind.MADE and number == 1)))
+    [line] = rendering.shown.wrong_counts
+    assert line.startswith("picture 0: place 1 made ") and not rendering.equal
+    assert "COUNTS DIFFER in 1 picture" in frames_summary(rendering)
 
 
 @pytest.mark.parametrize(("cage", "objects", "made"), [
@@ -164,4 +222,4 @@ def test_what_the_controller_makes_is_reported(tmp_path):
     [place] = facts["per_place"]
     assert facts["equal"] and facts["place"] == "controller"
     assert place["made"] == place["golden_made"] == rendering.objects.made[0] > 30
-    assert "Made in controller" in (tmp_path / "out" / "report.html").read_text()
+    assert "Made in the controller<" in (tmp_path / "out" / "report.html").read_text()

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from cardcage.golden.objects.made import Made
+from cardcage.golden.objects.making import LinkWords
 from cardcage.golden.reference.exact import draw
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.comparison.comparison_facts import comparison_facts
 from cardcage.testbenches.comparison.comparison_report import COMPARISON_FILES, comparison_page
-from cardcage.testbenches.comparison.comparison_table import comparison_table, comparison_text
+from cardcage.testbenches.comparison.comparison_table import (
+    OF_OBJECTS,
+    comparison_table,
+    comparison_text,
+    figures,
+)
 from cardcage.testbenches.engines.engine import Scan
+from cardcage.testbenches.frames.object_figures import ObjectFigures
 
 LIST = make_display_list("random:n=12,size=5,seed=5", width=8, height=8,
                          shading="flat").display_list
@@ -114,6 +123,27 @@ def test_text_is_aligned(small, capsys):
     assert lines[0] == "clocks"
     comparison_table(comparison)
     assert "speed-up, the scene as it is" in capsys.readouterr().out
+
+
+def test_what_was_made_of_objects_only_where_some_cage_makes_it(small):
+    comparison = small(nodes=(1, 2), simulate=0)
+    assert OF_OBJECTS not in figures(comparison) and "Triangles made" not in page(comparison)
+    words = LinkWords(70, 12)
+    made = ObjectFigures(
+        replace(comparison.runs[1].configuration, setup="hardware", objects="nodes", meshes=1,
+                mesh_triangles=12),
+        objects=3, clipped=0, meshes=1, mesh_triangles=12,
+        golden=[Made(2, 1024, 0, 5), Made(1, 512, 0, 7)], made=[1024, 512], dropped=[5, 7],
+        forwarded=None, golden_forwarded=[], words=words, golden_words=words, triangle_words=400)
+    first, second, *others = comparison.runs
+    comparison = replace(comparison, runs=[first, replace(second, objects=made), *others])
+    rows = dict(figures(comparison)[OF_OBJECTS])
+    assert rows["triangles made"] == ["-", "1,536", "-", "-", "-"]
+    assert rows["triangles dropped in set-up"] == ["-", "12", "-", "-", "-"]
+    text = page(comparison)
+    assert "<td>triangles made</td>" in text and "<dt>Triangles made" in text
+    facts = comparison_facts(comparison)["cages"][1]["objects"]
+    assert (facts["made"], facts["dropped"]) == (1536, 12)
 
 
 @pytest.mark.parametrize("name", ["cells", "gates"])

@@ -84,9 +84,13 @@ def test_a_preset_keeps_its_formats():
 
 
 def test_a_component():
-    assert run(*TINY, "--component", "memory_unit", "-o", "unit.v").exit_code == 0
-    assert "\nmodule memory_unit(" in Path("unit.v").read_text()
-    facts = json.loads(Path("unit.json").read_text())
+    """In a folder that is made for it."""
+    place = Path("some/new/folder")
+    assert run(*TINY, "--component", "memory_unit", "-o", place / "unit.v").exit_code == 0
+    assert sorted(file.name for file in place.iterdir()) == ["unit.json", "unit.v", "unit.vlt"]
+    assert list(Path().iterdir()) == [Path("some")]
+    assert "\nmodule memory_unit(" in (place / "unit.v").read_text()
+    facts = json.loads((place / "unit.json").read_text())
     assert facts["top"] == "memory_unit" and "left__id" in [port["name"] for port in facts["ports"]]
     assert list(facts["timing"]) == ["memory_unit"]
     assert [memory["words"] for memory in facts["memories"]] == [256]
@@ -128,7 +132,8 @@ def test_deterministic(arguments):
     *BAD_SCENES_AND_MACHINES,
     (["--component", "toaster"], "memory_unit"),
     (["-o", "machine.vhdl"], ".v"),
-    (["-o", "missing/machine.v"], "missing"),
+    (["-o", f"{os.devnull}/machine.v"], f"{os.devnull} is a file"),
+    (["nothing.obj", "-o", "new/folder/machine.v"], "nothing.obj"),
     (["-o", "folder.v"], "folder.v"),
 ])
 def test_refused(arguments, words):

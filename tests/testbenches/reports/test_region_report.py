@@ -9,6 +9,7 @@ from golden_machine import GoldenMachine
 from PIL import Image
 
 from cardcage.golden.specification.commands import ResponseKind
+from cardcage.testbenches.command_line.tables.render_summary import frames_summary
 from cardcage.testbenches.engines import choose_engine
 from cardcage.testbenches.machine_options import MachineOptions
 from cardcage.testbenches.render import render
@@ -77,6 +78,7 @@ def test_a_count_that_is_not_goldens(answers, tmp_path):
     assert all(frame.equal for frame in rendering.frames) and not rendering.equal
     [line] = rendering.shown.warnings
     assert line.startswith("picture 1: processing element 0 counted ")
+    assert "; COUNTS DIFFER in 1 picture\n" in frames_summary(rendering)
     facts = json.loads((tmp_path / "report.json").read_text())
     assert [frame["regions"]["equal"] for frame in facts["frames"]] == [True, False, True]
 

@@ -90,7 +90,7 @@ def test_what_is_no_path(tmp_path, text, message):
     ("hard:sliver-fan", SMALL, {"frames": 2, "turn": 1.0}, "--turn: hard:sliver-fan is no mesh"),
     ("tetra", MachineOptions(zoom=2.0), {"path": "views.csv"}, "--path: says from where each"),
     ("tetra", SMALL, {"path": "views.csv", "turn": 3.0}, "--path: says from where each"),
-    ("tetra", SMALL, {"path": "views.csv", "frames": 3}, "--frames: 3, but views.csv has 1 views"),
+    ("tetra", SMALL, {"path": "views.csv", "frames": 3}, "--frames: 3, but views.csv has 1 view;"),
     ("tetra", SMALL, {"path": "none.csv"}, "--path: none.csv: No such file or directory"),
     ("random", MachineOptions(view=(0.0, 0.0)), {"frames": 2}, "random: view: its triangles are"),
 ])

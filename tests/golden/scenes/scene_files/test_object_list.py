@@ -158,8 +158,29 @@ def test_a_mesh_file_is_found_from_the_scene_files_folder_and_fitted(tmp_path):
     file = scene(tmp_path, "obj mesh t.obj position 0,0,0").file
     [mesh] = file.placed.meshes
     assert np.abs(mesh.vertices).max(axis=0).tolist() == pytest.approx([2 / 3, 1 / 3, 1.0])
-    with pytest.raises(InputError, match=r"nothing\.obj"):
-        scene(tmp_path, "obj mesh nothing.obj")
+
+
+@pytest.mark.parametrize(("name", "contents", "said"), [
+    ("nothing.obj", None, "file: no such file; check the path"),
+    (".obj", None, "extension: none is not a mesh format; use one of .obj .stl .ply .glb .gltf"),
+    ("a.scene", None, "extension: .scene is not a mesh format; use one of .obj .stl"),
+    ("folder.obj", "", "file: is a directory; name the mesh file inside it"),
+    ("empty.ply", b"", "contents: the file is empty; export the mesh again"),
+    ("no.ply", b"obj cube", "contents: does not begin with 'ply': no PLY file; export it again"),
+    ("no.obj", b"v 1 2 x", "contents: line 1: cannot read the coordinates in '1 2 x'; repair the "),
+    ("no.stl", b"\xff" * 90, "the file is cut short, or no binary STL; export it again"),
+])
+def test_a_mesh_file_that_cannot_be_used_is_named_with_its_place_and_a_remedy(
+        tmp_path, name, contents, said):
+    if contents == "":
+        (tmp_path / name).mkdir()
+    elif contents is not None:
+        (tmp_path / name).write_bytes(contents)
+    with pytest.raises(InputError) as caught:
+        scene(tmp_path, f"ambient 10\n\tobj  mesh {name} scale 0.5")
+    text = str(caught.value)
+    assert text.startswith(f"{tmp_path}/a.scene: line 2, column 12: {tmp_path}/{name}: ")
+    assert said in text and "\n" not in text
 
 
 def test_a_replaced_description_is_drawn_too():

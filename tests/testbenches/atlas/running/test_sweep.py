@@ -17,7 +17,7 @@ from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.atlas.atlas import AtlasOptions, make_atlas
 from cardcage.testbenches.atlas.points.atlas_point import Failure
 from cardcage.testbenches.atlas.points.measure import Batch, batches, measure
-from cardcage.testbenches.atlas.running.sweep import Sweep
+from cardcage.testbenches.atlas.running.sweep import KEPT, Sweep
 from cardcage.testbenches.atlas.running.workers import LocalWorkers
 from cardcage.testbenches.support.measurement_cache import package_hash
 
@@ -84,7 +84,7 @@ def test_a_machine_that_there_cannot_be_is_refused(cache):
     assert [point.cage.label for point in atlas.figures] == ["PM"]
     assert not atlas.differences  # it is no fault of a machine's
     [line] = atlas.warnings
-    assert line.startswith("PMM PM, 1 points: ")
+    assert line.startswith("PMM PM, 1 point: ")
     with pytest.raises(InputError, match="no such machine"):
         make_atlas(replace(asked, cages=("PMM PM",), processes=1))
 
@@ -103,6 +103,7 @@ def test_a_full_disk_keeps_nothing_and_changes_nothing(wanted, cache, monkeypatc
     made, found = sweep(processes=1)
     assert found == wanted
     assert made.not_kept == "No space left on device"
+    assert "could not be kept (No space left on device)" in made.what_is_kept()
     assert not cache.exists()
 
 
@@ -124,7 +125,7 @@ def test_an_interrupted_sweep_goes_on(tmp_path, cache):
     os.killpg(running.pid, signal.SIGINT)  # as a terminal does, to all of them
     _, errors = running.communicate(timeout=60)
     assert running.returncode == 130, errors
-    assert errors == b""
+    assert errors.decode() == f"cardcage: interrupted: {KEPT}\n"
     assert not (tmp_path / "report").exists()
     assert not list(tmp_path.glob(".cardcage-*"))
     kept = len([path for path in cache.iterdir() if len(path.name) == 32])
