@@ -16,6 +16,7 @@ CAGES = ((Cage("2x(PMM)", regions=(4, 4)), 1),
          (Cage("2x(PMC)", retained=True), 1), (Cage("2x(PMT)", retained=True), 2),
          (Cage("2x(PMMS)F"), 1), (Cage("2xPD2xM", retained=True), 2))
 
+
 @pytest.mark.parametrize(("cage", "ports"), CAGES, ids=str)
 def test_as_many_as_in_the_verilog(cage, ports):
     options = cage.options(MachineOptions(size=(64, 64), memory_ports=ports))
