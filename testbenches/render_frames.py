@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, get_args
 
 from ..golden.cycles.frame_clocks import predict_frame
-from ..golden.planning.machine_plan import plan
 from ..golden.specification.configuration import MachineConfiguration
 from ..golden.specification.errors import InputError
 from .engines.engine import Progress
@@ -18,9 +17,11 @@ from .frames.setup_timing import setup_timing
 from .frames.wrong_counts import wrong_counts
 from .machine_options import resolution_warnings
 from .render import DEFAULT_SCENE, RenderOptions
-from .sequence.scene_frames import SceneFrames
 from .sequence.sequence_run import Reading, SequenceFrame, simulate_sequence
 from .support.atomic_output import atomic_folder, output_errors
+from .views import asked_views
+from .views.asked_views import machine_for_frames
+from .views.scene_frames import SceneFrames
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,7 @@ def prepare_frames(scene: str | Path = DEFAULT_SCENE, options: FramesOptions | N
         raise InputError(f"depth: {options.depth!r} is none of {', '.join(get_args(Reading))}")
     lists = SceneFrames(scene, options, frames=options.frames, turn=options.turn,
                         path=options.path)
-    configuration = plan(lists, **options.for_plan()).configuration
+    configuration = machine_for_frames(lists, options)
     return FramesJob(lists, configuration, options, command_line,
                      (*lists.first.notes, *resolution_warnings(configuration)), began)
 
@@ -155,6 +156,4 @@ def render_frames(scene: str | Path = DEFAULT_SCENE, *, out: str | Path | None =
 
 def check_alone(options: FramesOptions) -> None:
     """``InputError`` for what only a sequence can be asked, where one picture is to be drawn."""
-    for name, given in (("--turn", options.turn is not None), ("--depth", options.depth == "all")):
-        if given:
-            raise InputError(f"{name}: is for several pictures; give --frames as well")
+    asked_views.check_alone(turn=options.turn is not None, depth=options.depth == "all")

@@ -24,8 +24,8 @@ WINGS = {
         "lines_to_all", "balancing", "controller", "video", "nodes", "snooping", "direct",
         "forwarding", "machine", "components"),
     "testbenches": (
-        "support", "machine_options", "export", "engines", "frames", "sequence", "reports",
-        "render", "render_frames", "comparison", "speed", "fpga", "precision", "atlas",
+        "support", "machine_options", "views", "export", "engines", "frames", "sequence",
+        "reports", "render", "render_frames", "comparison", "speed", "fpga", "precision", "atlas",
         "figures", "cocotb_bench", "command_line", "studies"),
     "package": ("__main__",),
 }

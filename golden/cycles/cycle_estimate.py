@@ -20,6 +20,7 @@ list lie in the same ones, twice as long.  ``cycle_model`` follows all that.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -197,13 +198,16 @@ def visible_share(complexity: NDArray[np.int32]) -> float:
     return float((counts * written).sum()) / total if total else 0.0
 
 
-def cards_for_cycles(display_list: DisplayList, cycles: int, **fields: Any) -> str:
+def cards_for_cycles(display_list: DisplayList | Sequence[DisplayList], cycles: int,
+                     **fields: Any) -> str:
     """The cards, with the fewest processing elements and then the fewest memory units, that are
-    estimated to draw ``display_list`` in at most ``cycles``.
+    estimated to draw ``display_list``, or each of several of one size, in at most ``cycles``.
 
     ``fields`` of ``MachineConfiguration`` besides the cards and what the list itself gives.
     Raises ``InputError`` where more processing elements no longer help.
     """
+    lists = [display_list] if isinstance(display_list, DisplayList) else display_list
+    first = lists[0]
     best: tuple[int, str] | None = None
     elements, refused = 1, InputError("")
     while elements <= MOST_ELEMENTS:
@@ -212,12 +216,12 @@ def cards_for_cycles(display_list: DisplayList, cycles: int, **fields: Any) -> s
             cards = f"{elements}x(P{'M' * units})" if elements > 1 else "P" + "M" * units
             try:
                 machine = MachineConfiguration(
-                    cards=cards, width=display_list.width, height=display_list.height,
-                    sub_bits=display_list.sub_bits, depth_bits=display_list.depth_bits, **fields)
+                    cards=cards, width=first.width, height=first.height,
+                    sub_bits=first.sub_bits, depth_bits=first.depth_bits, **fields)
             except InputError as error:  # so few units do not hold the picture
                 refused = error
                 continue
-            total = estimate_cycles(machine, display_list).total
+            total = max(estimate_cycles(machine, each).total for each in lists)
             if total <= cycles:
                 return cards
             best = min(best or (total, cards), (total, cards))

@@ -117,7 +117,7 @@ def plan(display_list: DisplayList | Sequence[DisplayList], *, cards: str, max_e
         balancer=planned.balancer,
         fraction_bits=on_screen_fraction_bits(planned.width, planned.height, own_sub_bits,
                                               max_error))
-    lines = _lines(planned, full, needs, max_error)
+    lines = _lines(planned, full, needs, max_error, len(lists) > 1)
     if objects is not None:
         lines += lines_of_objects(planned, objects)
     if nodes:
@@ -146,7 +146,7 @@ def triangle_bits(configuration: MachineConfiguration) -> int:
 
 
 def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: SceneNeeds,
-           max_error: int) -> list[PlanLine]:
+           max_error: int, several: bool) -> list[PlanLine]:
     unit = 1 << planned.sub_bits
 
     def bits(item: str, name: str, reason: str, **also: Any) -> PlanLine:
@@ -185,6 +185,9 @@ def _lines(planned: MachineConfiguration, full: MachineConfiguration, needs: Sce
                  if planned.regions is None else
                  f"{planned.slots} slots, each of {1 << planned.slot_bits} words of a region"),
         PlanLine("FIFO depth", str(planned.fifo_depth), str(full.fifo_depth),
+                 # The most of each, which need not be of the same list.
+                 f"up to {needs.drawn:,} of a picture's up to {needs.triangles:,} triangles may "
+                 "cover a pixel" if several else
                  f"{needs.drawn:,} of {needs.triangles:,} triangles may cover a pixel"),
     ]
 

@@ -24,7 +24,7 @@ from ...golden.specification.fixed_point import MAX_FRACTION_BITS, MAXIMUM_ERROR
 from ...golden.specification.ranges import MAXIMUM_SIZE, MAXIMUM_WORDS
 from ...golden.specification.regions import MAXIMUM_REGIONS, Balancer
 from ..machine_options import DEFAULT_PACKET, SETUPS
-from ..sequence.frame_views import DEFAULT_TURN, MOST_FRAMES
+from ..views.frame_views import DEFAULT_TURN, MOST_FRAMES
 
 
 class Size(click.ParamType):
@@ -184,11 +184,11 @@ _FURTHER_OPTIONS = (
 #: Several pictures.
 _SEQUENCE_OPTIONS = (
     click.option("--frames", type=click.IntRange(1, MOST_FRAMES), metavar="N",
-                 help="Draw N pictures one after another, of a mesh that turns."),
+                 help="N pictures one after another, of a mesh that turns."),
     click.option("--turn", type=float, metavar="DEGREES",
                  help=f"With --frames: from one picture to the next.  [default: {DEFAULT_TURN}]"),
     click.option("--path", type=click.Path(path_type=Path), metavar="VIEWS.csv",
-                 help="Draw a picture for each line, which has azimuth,elevation or "
+                 help="A picture for each line of this file, which has azimuth,elevation or "
                  "azimuth,elevation,zoom; the first line names them."),
 )
 

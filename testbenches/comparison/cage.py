@@ -30,7 +30,7 @@ from ..frames.region_figures import RegionFigures
 from ..frames.responses import MachineError, Simulation
 from ..frames.wrong_counts import wrong_counts
 from ..machine_options import MachineOptions, resolution_warnings
-from ..sequence.scene_frames import SceneFrames
+from ..views.scene_frames import SceneFrames
 from .cage_memory import Memory, cells_of, memories_of
 from .frame_sequence import Clocks, FrameSequence, Latency
 from .view_spread import ViewFigures, draw_views

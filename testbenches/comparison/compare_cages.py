@@ -19,9 +19,9 @@ from ...golden.specification.fields.making import Objects
 from ..engines.choose_engine import AUTO, make_engine
 from ..machine_options import MachineOptions, load_scene
 from ..render import DEFAULT_SCENE
-from ..sequence.scene_frames import SceneFrames
 from ..support.atomic_output import atomic_folder, output_errors
 from ..support.processes import run_jobs
+from ..views.scene_frames import SceneFrames
 from .cage import Cage, CageJob, CageRun, Refused
 from .node_sweep import Curve, Place, Point, PointJob, curves_of, places, time_of
 

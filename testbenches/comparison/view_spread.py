@@ -11,8 +11,8 @@ from ...golden.specification.configuration import MachineConfiguration
 from ...golden.specification.display_list import DisplayList
 from ..frames.node_counts import count_differences, node_figures, unit_differences
 from ..frames.wrong_counts import wrong_counts
-from ..sequence.scene_frames import SceneFrames
 from ..sequence.sequence_run import SequenceFrame, simulate_sequence
+from ..views.scene_frames import SceneFrames
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,8 @@ from ..machine_options import (
 )
 from ..support.any_characters import readable
 from ..support.atomic_output import atomic_file, output_errors
+from ..support.counted import counted
+from ..views.asked_views import AskedViews, machine_for_frames
 
 #: Fields that the Verilog's header tells only of machines that have what they ask for.
 _SAID_WHERE_ON = ("lines", *NO_OBJECTS)
@@ -78,6 +80,7 @@ class Export:
 
 
 def export(output: str | Path, scene: str | Path | None = None, *, component: str | None = None,
+           frames: int | None = None, turn: float | None = None, path: str | Path | None = None,
            **options: Any) -> Export:
     """Write a machine as Verilog, its description as JSON and Verilator's lint waivers.
 
@@ -85,6 +88,8 @@ def export(output: str | Path, scene: str | Path | None = None, *, component: st
     ``scene``      its numbers are as wide as this scene needs; None: every triangle on the screen
                    is drawn exactly
     ``component``  one of ``COMPONENT_NAMES`` alone; None: the whole machine
+    ``frames``, ``turn``, ``path``  several pictures of the scene, as of ``render_frames``: its
+                   numbers are as wide as all of them need
     ``options``    the fields of ``MachineOptions``: ``cards``, ``size`` and the others that the
                    command line has
 
@@ -96,10 +101,11 @@ def export(output: str | Path, scene: str | Path | None = None, *, component: st
     >>> exported.top, exported.verilog.name, exported.description.name
     ('machine', 'machine.v', 'machine.json')
     """
-    return _export(Path(output), scene, MachineOptions(**options), component)
+    asked = AskedViews(frames, turn, None if path is None else Path(path))
+    return _export(Path(output), scene, MachineOptions(**options), asked, component)
 
 
-def _export(output: Path, scene: str | Path | None, options: MachineOptions,
+def _export(output: Path, scene: str | Path | None, options: MachineOptions, asked: AskedViews,
             component: str | None) -> Export:
     if output.suffix != ".v":
         raise InputError(f"-o: {output} does not end in .v, as a Verilog file should")
@@ -109,15 +115,13 @@ def _export(output: Path, scene: str | Path | None, options: MachineOptions,
     with ExitStack() as written:
         places = [written.enter_context(atomic_file(target, "-o"))
                   for target in (output, description, waivers)]
-        notes: tuple[str, ...] = ()
-        if scene is None:
-            configuration = machine_without_scene(options)
-        else:
-            loaded, configuration = machine_for_scene(scene, options)
-            notes = loaded.notes
-        precision = _precision(configuration, options, scene)
+        configuration, notes, subject = _machine(scene, options, asked)
+        precision = _precision(configuration, options, subject)
         text, facts = _translated(configuration, component)
-        text = _header(configuration, options, scene, component, precision) + text
+        words = ["cardcage export", *([] if scene is None else [_name_alone(scene)]),
+                 *option_words(options), *asked.words(_name_alone),
+                 *(["--component", component] if component else [])]
+        text = _header(configuration, words, component, precision) + text
         contents = (text, json.dumps(facts | {"precision": precision}, indent=1) + "\n",
                     WAIVERS.read_text("utf-8"))
         with output_errors(output, "-o"):
@@ -125,6 +129,20 @@ def _export(output: Path, scene: str | Path | None, options: MachineOptions,
                 place.write_text(readable(content), encoding="utf-8", newline="\n")
     return Export(configuration, output, description, waivers, facts["top"], text.count("\n"),
                   precision, (*notes, *resolution_warnings(configuration)))
+
+
+def _machine(scene: str | Path | None, options: MachineOptions, asked: AskedViews
+             ) -> tuple[MachineConfiguration, tuple[str, ...], str]:
+    """With the scene's notes, and what it draws."""
+    if scene is None:
+        asked.check_no_scene()
+        return machine_without_scene(options), (), "every triangle whose vertices are on the screen"
+    lists = asked.lists(scene, options)
+    if lists is None:
+        loaded, configuration = machine_for_scene(scene, options)
+        return configuration, loaded.notes, _name_alone(scene)
+    return (machine_for_frames(lists, options), lists.first.notes,
+            f"each of {counted(len(lists), 'picture')} of {_name_alone(scene)}")
 
 
 def export_summary(exported: Export) -> str:
@@ -152,11 +170,8 @@ def _translated(configuration: MachineConfiguration, component: str | None
     return text, describe(configuration, text, component)
 
 
-def _precision(configuration: MachineConfiguration, options: MachineOptions,
-               scene: str | Path | None) -> str:
+def _precision(configuration: MachineConfiguration, options: MachineOptions, subject: str) -> str:
     bits = configuration.fraction_bits
-    subject = ("every triangle whose vertices are on the screen" if scene is None else
-               _scene_name(scene))
     if options.max_error:
         return f"{bits}, at most {options.max_error} LSB of depth off for {subject}"
     if options.machine().get("fraction_bits") is not None:
@@ -165,15 +180,13 @@ def _precision(configuration: MachineConfiguration, options: MachineOptions,
     return f"{bits}, exact for {subject}"
 
 
-def _scene_name(scene: str | Path) -> str:
+def _name_alone(file: str | Path) -> str:
     """A file without its folder: the same file gives the same text wherever it lies."""
-    return str(scene).replace("\\", "/").rpartition("/")[2]
+    return str(file).replace("\\", "/").rpartition("/")[2]
 
 
-def _header(configuration: MachineConfiguration, options: MachineOptions, scene: str | Path | None,
-            component: str | None, precision: str) -> str:
-    words = ["cardcage export", *([_scene_name(scene)] if scene is not None else []),
-             *option_words(options), *(["--component", component] if component else [])]
+def _header(configuration: MachineConfiguration, words: list[str], component: str | None,
+            precision: str) -> str:
     built = ", ".join(f"{field.name} {getattr(configuration, field.name)}"
                       for field in fields(configuration) if field.name != "timing"
                       and (field.name not in _SAID_WHERE_ON or getattr(configuration, field.name)))

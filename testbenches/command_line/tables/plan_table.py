@@ -42,10 +42,13 @@ def plan_table(planned: ScenePlan) -> None:
 
 
 def _title(planned: ScenePlan) -> str:
-    machine = planned.plan.configuration
-    return (f"{planned.scene.name}: {counted(planned.plan.needs.triangles, 'triangle')} at "
-            f"{machine.width}x{machine.height}; full is a machine for every triangle on that "
-            "screen")
+    machine, pictures = planned.plan.configuration, planned.pictures
+    triangles, one = counted(planned.plan.needs.triangles, "triangle"), ""
+    if pictures is not None:
+        triangles = f"{counted(len(pictures.cycles), 'picture')} of up to {triangles}"
+        one = ", one machine" + (" that is exact for each" if planned.exact else " for each")
+    return (f"{planned.scene.name}: {triangles} at {machine.width}x{machine.height}{one}; full is "
+            "a machine for every triangle on that screen")
 
 
 def _rows(planned: ScenePlan) -> list[tuple[str, str, str, str, str]]:
@@ -65,8 +68,12 @@ def _summary(planned: ScenePlan) -> list[str]:
     plan, machine = planned.plan, planned.plan.configuration
     chosen = (f"chosen for {planned.budget:,}" if planned.budget is not None else
               "as given")
-    takes = ("to draw, not to merge, takes" if organisation_of(machine).merges_after_drawing else
-             "a frame takes")
+    merges, pictures = organisation_of(machine).merges_after_drawing, planned.pictures
+    takes = "to draw, not to merge, takes" if merges else "a frame takes"
+    if pictures is not None and len(pictures.cycles) > 1:
+        takes = (f"the slowest picture, {pictures.slowest} of 0 to {len(pictures.cycles) - 1}, of "
+                 f"{counted(pictures.triangles, 'triangle')}, takes"
+                 + (" to draw, not to merge," if merges else ""))
     lines = [
         f"each triangle broadcast: {triangle_bits(machine):,} bits instead of "
         f"{triangle_bits(plan.full):,} (saves counts these, each line by itself)",

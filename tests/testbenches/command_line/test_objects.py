@@ -22,7 +22,7 @@ from cardcage.testbenches.render import render
 from cardcage.testbenches.render_frames import render_frames
 from cardcage.testbenches.reports.frame_facts import report_facts
 from cardcage.testbenches.reports.frame_report import report_page
-from cardcage.testbenches.sequence.scene_frames import SceneFrames
+from cardcage.testbenches.views.scene_frames import SceneFrames
 
 SCENE = ("obj cube scale 0.5 rot 20,30,0 num 3 seed 2 color random\n"
          "obj cone scale 3 position 2,1,0 recursion 0\n")

@@ -15,7 +15,7 @@ from cardcage.testbenches.machine_options import MachineOptions
 from cardcage.testbenches.render import render
 from cardcage.testbenches.render_frames import render_frames
 from cardcage.testbenches.reports.region_pictures import element_colors, region_picture
-from cardcage.testbenches.sequence.scene_frames import SceneFrames
+from cardcage.testbenches.views.scene_frames import SceneFrames
 
 SCENE = "tetra:depth=1"
 MACHINE = {"cards": "3x(PM)", "size": (16, 16), "regions": (4, 4)}

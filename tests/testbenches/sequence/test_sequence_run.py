@@ -14,8 +14,8 @@ from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
 from cardcage.testbenches.frames.responses import MachineError
 from cardcage.testbenches.machine_options import MachineOptions
-from cardcage.testbenches.sequence.scene_frames import SceneFrames
 from cardcage.testbenches.sequence.sequence_run import SequenceCommands, simulate_sequence
+from cardcage.testbenches.views.scene_frames import SceneFrames
 
 try:
     find_verilator()

@@ -6,8 +6,8 @@ from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.scenes.camera import View
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.machine_options import MachineOptions
-from cardcage.testbenches.sequence.frame_views import read_path, turning
-from cardcage.testbenches.sequence.scene_frames import SceneFrames
+from cardcage.testbenches.views.frame_views import read_path, turning
+from cardcage.testbenches.views.scene_frames import SceneFrames
 
 SMALL = MachineOptions(size=(16, 12))
 

@@ -26,10 +26,10 @@ class SceneFrames(Sequence[DisplayList]):
     ``first``           the first one's list, with the scene's name and notes
     ``most_triangles``  of a list, of those that have been made
 
-    ``frames``, ``turn`` and ``path`` are what was asked for: how many, degrees from one to the
-    next, or a file of views.  A scene that is no mesh cannot be turned; it is drawn as often as
-    asked.  A list is made again where it is no longer kept, so that a long sequence takes no more
-    memory than a short one.  Raises ``InputError``.
+    ``frames``, ``turn`` and ``path`` are those of ``AskedViews``.  A scene that is no
+    mesh cannot be turned; it is drawn as often as asked.  A list is made again where it is no
+    longer kept, so that a long sequence takes no more memory than a short one.  Raises
+    ``InputError``.
     """
 
     def __init__(self, scene: str | Path, options: MachineOptions, *, frames: int | None,

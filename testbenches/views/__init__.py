@@ -1,0 +1,1 @@
+"""From where pictures of a scene are seen, one after another."""
