@@ -16,8 +16,8 @@ from .cases import Order, peers
 from .speed_rows import QUEUE, BenchRow
 
 TITLES: dict[Order, str] = {
-    "visible": "every fragment visible",
-    "random": "random order of depths",
+    "visible": "every fragment visible; mesh in list order",
+    "random": "depths shuffled; mesh in shuffled order",
 }
 
 _COLUMNS = ("case", "triangles", "clocks a triangle", "of bound", "bound by")
