@@ -64,9 +64,9 @@ def _numbers(least: int, most: int) -> Several:
               help="With regions: what is counted of each: static nothing, triangles, or clocks.  "
               "[default: clocks]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
-              help="visible: each triangle lies before those drawn earlier; random: the list stays, "
-              "and depths are shuffled.  Of mesh, which has depths of its own, visible draws the "
-              "list in its order, and random shuffles the list.  [default: visible]")
+              help="visible: each triangle lies before those drawn earlier; random: the list "
+              "stays, and depths are shuffled.  Of mesh, which has depths of its own, visible "
+              "draws the list in its order, and random shuffles the list.  [default: visible]")
 @view_options
 @click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
               "option restricts: hours.")
