@@ -134,7 +134,7 @@ class Cage:
 
 def _place(cage: str, place: str) -> Objects:
     """``InputError`` for one where no machine makes triangles."""
-    known = {each: each for each in get_args(Objects)}
+    known: dict[str, Objects] = {each: each for each in get_args(Objects)}
     if (found := known.get(place.strip())) is None:
         raise InputError(f"cage: {cage}{MADE_IN}{place}: {place.strip()!r} is no place where "
                          "triangles of objects are made, which comes last, as in "

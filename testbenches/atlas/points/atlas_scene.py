@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from ....golden.scene_argument import BuiltInScene, HardCaseScene, parse_scene
 from ....golden.scene_display_list import SceneDisplayList
@@ -67,7 +70,7 @@ def _hash(listed: DisplayList) -> str:
     """Of all that a machine is told of it: of objects as well, since other ones may have the same
     triangles."""
     numbers = (listed.width, listed.height, listed.sub_bits, listed.depth_bits, listed.background)
-    arrays = [listed.position, listed.depth, listed.color]
+    arrays: list[NDArray[Any]] = [listed.position, listed.depth, listed.color]
     made: object = None
     if isinstance(listed, ObjectDisplayList):
         objects = listed.objects
