@@ -21,6 +21,7 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
         parts.append(self)
 
     lonely = set(COMPONENTS)
+    classes = {}
     for cards, changes in (
             ("PMMPMM", {}), ("PMMPMM", {"memory_ports": 2}), ("PMMC", {}), ("PMMT", {}),
             ("PMMSF", {}), ("PPDMM", {"memory_ports": 2}),
@@ -33,8 +34,12 @@ def test_every_component_is_a_part_of_a_machine(monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(wiring.Component, "__init__", note)
             Fragment.get(Machine(configuration=configuration), None)
+        there = {type(part) for part in parts}
         for name in sorted(lonely):
+            if classes.get(name, object) not in there | {object}:
+                continue
             alone = COMPONENTS[name](configuration)
+            classes[name] = type(alone)
             if any(type(part) is type(alone) and component_ports(part) == component_ports(alone)
                    for part in parts):
                 lonely.remove(name)

@@ -39,8 +39,7 @@ def counted(configuration: MachineConfiguration, listed: DisplayList) -> int:
     return int(accepted[-1] - accepted[start + 1])
 
 
-@pytest.mark.parametrize("retained", [False, True])
-@pytest.mark.parametrize("cards", ["2x(PMC)", "2x(PMPMMMC)"])
+@pytest.mark.parametrize(("cards", "retained"), [("2x(PMC)", True), ("2x(PMPMMMC)", False)])
 def test_nodes_take_the_predicted_clocks(cards, retained):
     """With two ports, to the clock, where the last triangle of each node ends in the lowest row
     with a pixel of everyone's; with queues that fill."""

@@ -57,7 +57,7 @@ def forwarded_in(run, places):
 @pytest.mark.parametrize(("scan", "refused"), [
     (0.0, 0.0), (0.3, 0.0), (0.8, 0.0), (0.0, 0.5), (0.3, 0.3)])
 @pytest.mark.parametrize("units", [1, 2, 4])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [1])
 def test_random_fragments(seed, units, scan, refused):
     fragments = on_few_pixels(f"{seed} {units} {scan}", 250, units=units, words=WORDS)
     run = draw(fragments, units=units, pause=pauses(seed), scan=scan, seed=seed, refused=refused)

@@ -97,8 +97,8 @@ def passed_over(model, following, inputs, element, unit, states):
 
 
 @pytest.mark.parametrize(("elements", "units", "depth", "shared", "limit"), [
-    (2, 1, 2, False, None), (3, 1, 1, False, None), (2, 2, 1, False, 6000),
-    (2, 2, 1, True, 6000), (2, 2, 2, True, 6000)])
+    (2, 1, 2, False, None), (3, 1, 1, False, None), (2, 2, 1, False, 3000),
+    (2, 2, 1, True, 3000), (2, 2, 2, True, 3000)])
 def test_every_step_from_every_state(monkeypatch, elements, units, depth, shared, limit):
     """As the model has it, signal by signal; of the larger ones as many as there is time for."""
     model = CrossbarModel(elements, units, depth, shared=shared)

@@ -37,7 +37,7 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [1])
 def test_boot_two_frames_and_their_reports(machine, seed):
     cards, (first, end), shading, changes = MACHINES[machine]
     lists = [random_triangles(f"{machine} {seed} {frame}", 14, width=8, height=8,
