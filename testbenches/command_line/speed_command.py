@@ -59,13 +59,14 @@ def _numbers(least: int, most: int) -> Several:
               help="Triangles a processing element holds in waiting.  [default: 16]")
 @click.option("--regions", type=Several(RegionCounts("none"), "COLUMNSxROWS,…"),
               help="Regions of the screen, dealt out by what the same picture costs them, as in "
-              "16x8; none interlaces pixels.  [default: none]")
+              "8x16; none interlaces pixels.  [default: none]")
 @click.option("--balance", "balances", type=Several(click.Choice(get_args(Balance)), "WHAT,…"),
               help="With regions: what is counted of each: static nothing, triangles, or clocks.  "
               "[default: clocks]")
 @click.option("--order", "orders", type=Several(click.Choice(ORDERS), "HOW,…"),
-              help="Of depths: visible draws each triangle before those drawn earlier, random "
-              "shuffles them.  [default: visible]")
+              help="visible: each triangle lies before those drawn earlier; random: the list "
+              "stays, and depths are shuffled.  Of mesh, which has depths of its own, visible "
+              "draws the list in its order, and random shuffles the list.  [default: visible]")
 @view_options
 @click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
               "option restricts: hours.")
@@ -99,7 +100,7 @@ def bench_command(command_line: str, /, cases: tuple[str, ...], orders: tuple[An
       cardcage bench mesh --elements 16 --fifo 2,4,8,16,32,64 --plot fifo.png
       cardcage bench random_bbox16 mesh --elements 16 --block 1,2,4,8,16,32 --engine model
       cardcage bench random_bbox16 sliver_vert_2x480 --ports 1 --no-skew
-      cardcage bench random_bbox16 sliver_diag_480 --elements 16 --regions none,16x8
+      cardcage bench random_bbox16 sliver_diag_480 --elements 16 --regions none,8x16
       cardcage bench random_bbox16 --elements 256,1024 --engine model
       cardcage bench --json now.json --against before.json
       cardcage bench --all --json everything.json

@@ -89,6 +89,6 @@ def load_chart(facts: dict[str, Any]) -> str:
         axes.set_ylabel(facts["counted"])
         axes.set_xlabel("processing element")
         axes.xaxis.set_major_locator(MaxNLocator(16, integer=True))
-        axes.legend(loc="upper right", frameon=False)
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False)
         axes.spines[["top", "right"]].set_visible(False)
         return svg_element(figure, f"Counted {facts['counted']} of each processing element")

@@ -62,6 +62,7 @@ def _frame(frame: SequenceFrame, view: View, before: SequenceFrame | None) -> di
         "clocks": None if before is None else frame.shown - before.shown,
         "first_scan": frame.first_scan,
         "scans": frame.scans,
+        "scans_before_next_start": frame.scans_before_next_start,
         "wrong_scans": frame.wrong_scans,
         "repeated_scans": simulation.repeated_scans,
         "a_picture_a_scan": before is not None and before.scans == 1,

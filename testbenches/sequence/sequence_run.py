@@ -3,8 +3,10 @@
 A scan begins every so many clocks, from reset on, and a finished picture takes the place of the
 last one as a scan begins.  So picture i is on the video pins from the scan that follows its end,
 which is r scans after the first that begins after its ``FRAME_START``, r as ``FRAME_SHOWN`` says,
-up to the last one before the first of picture i + 1.  Where the host starts the next picture at
-once that is 1 + r scans, r the next one's.
+up to the last one before the first of picture i + 1.  Where the next picture is started before
+another scan begins that is 1 + r scans, r the next one's.  Scans that begin with picture i before
+that start, while something is read back or a table is made, come on top: ``FRAME_SHOWN`` does not
+count them.
 """
 
 from __future__ import annotations
@@ -100,6 +102,8 @@ class SequenceFrame:
     ``comparison``  with the golden picture
     ``first_scan``  the number of the scan that shows it first, counted from reset
     ``scans``       on how many it was seen; of the last picture, how many were waited for
+    ``scans_before_next_start``  how many of them, its first one left out, began before the start of
+                    the next picture was taken; None of the last picture
     ``wrong_scans`` those of them that do not show the golden picture
     ``shown``       the clock in which the machine said that it is shown
     ``regions``     what its regions cost; None where none are dealt out
@@ -112,6 +116,7 @@ class SequenceFrame:
     comparison: Comparison
     first_scan: int
     scans: int
+    scans_before_next_start: int | None
     wrong_scans: int
     shown: int
     regions: RegionFigures | None = None
@@ -164,8 +169,8 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
     shown = [(scan, cycle) for kind, scan, cycle in run.responses
              if kind == ResponseKind.FRAME_SHOWN]
     # A scan that begins in the clock of the start counts.
-    first = [-(-(int(start) - 1) // scan_clocks) + repeated
-             for start, (repeated, _) in zip(starts, shown, strict=True)]
+    after_start = [-(-(int(start) - 1) // scan_clocks) for start in starts]
+    first = [scan + repeated for scan, (repeated, _) in zip(after_start, shown, strict=True)]
     ends = [*first[1:], max(scans) + 1]
     if any(scans[number].any() for number in scans if number < first[0]):
         raise MachineError("something was seen before the first picture was shown")
@@ -182,7 +187,10 @@ def _judged(configuration: MachineConfiguration, lists: Sequence[DisplayList], r
         comparison = compare(configuration, display_list, simulation)
         different = [(scans[scan] != comparison.expected).any(axis=2) & ~comparison.color_orphans
                      for scan in seen]
+        # Where a bus draws ahead, the next one is started before this one is shown.
+        waited = None if last else max(0, after_start[number + 1] - seen[0] - 1)
         yield SequenceFrame(number, display_list.triangles, simulation, comparison, seen[0],
-                            len(seen), sum(map(bool, map(np.any, different))), shown[number][1],
+                            len(seen), waited, sum(map(bool, map(np.any, different))),
+                            shown[number][1],
                             None if tables is None else tables.figures(number, simulation),
                             object_figures(configuration, display_list, simulation))

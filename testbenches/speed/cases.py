@@ -30,7 +30,9 @@ MESH_SCENE = "teapot:tessellation=29"
 LEAST_TRIANGLES = 64
 
 #: In which order the triangles of a case lie behind one another.  ``visible``: each wholly before
-#: those drawn earlier, so that every fragment is written; ``random``: shuffled.
+#: those drawn earlier, so that every fragment is written; ``random``: the list stays, and who lies
+#: where is shuffled.  A mesh keeps its depths: ``visible`` leaves its list as it is, ``random``
+#: shuffles that, so that neighbours in the list are no neighbours on the screen.
 Order = Literal["visible", "random"]
 ORDERS: tuple[Order, ...] = ("visible", "random")
 
@@ -129,7 +131,8 @@ def case_lists(name: str, order: Order = "visible", seed: int = 1, times: int = 
 
     The peers' triangles have their vertices on pixel centres and no depth.  Here triangle i of
     3n has a slot of depths to itself, and slopes through all of it.  A mesh has depths: each of
-    its three passes is moved into a third of the range, before the one before.
+    its three passes is moved into a third of the range, before the one before.  Its shuffled list
+    is the same in all three; a triangle's number is its place in there, as in any list.
     """
     check_case(name)
     random = np.random.default_rng([seed, ORDERS.index(order)])

@@ -12,12 +12,17 @@ from rich.table import Table
 from ...golden.organisations.organisation_of import organisation_of
 from ..engines.activity_record import ACTIVITY_KINDS
 from ..reports.region_facts import region_summary
-from .cases import Order, peers
+from .cases import MESH, Order, peers
 from .speed_rows import QUEUE, BenchRow
 
 TITLES: dict[Order, str] = {
     "visible": "every fragment visible",
-    "random": "random order of depths",
+    "random": "depths shuffled, the list as it is",
+}
+#: Of a mesh, whose depths are its own.
+MESH_TITLES: dict[Order, str] = {
+    "visible": "mesh in list order",
+    "random": "mesh in shuffled order",
 }
 
 _COLUMNS = ("case", "triangles", "clocks a triangle", "of bound", "bound by")
@@ -52,13 +57,12 @@ def bench_table(rows: Sequence[BenchRow]) -> None:
 
 def _tables(rows: Sequence[BenchRow]) -> list[tuple[str, list[tuple[str, ...]]]]:
     """Title and cells, the header first, of two tables for each machine and order."""
-    def title(row: BenchRow) -> str:
-        return f"{row.machine.label}; {TITLES[row.order]}"
-
     tables = []
-    for name, group in groupby(rows, title):
+    for (label, _), group in groupby(rows, lambda row: (row.machine.label, row.order)):
         some = list(group)
-        tables.append((name, [_header(some[0]), *map(_cells, some)]))
+        orders = dict.fromkeys((MESH_TITLES if row.case.split()[0] == MESH else TITLES)[row.order]
+                               for row in some)
+        tables.append(("; ".join([label, *orders]), [_header(some[0]), *map(_cells, some)]))
         observed = [(row.case, row.measured.activity.shares()) for row in some
                     if row.measured is not None and row.measured.activity is not None]
         if observed:

@@ -35,26 +35,36 @@ PANELS = {
 
 POINT_COLOR = "#c0392b"
 
+#: Inches, at least: pages draw every chart as wide as they are, and its type with it.
+_WIDTH = 10.5
+
 
 def figure_4(model: ModelDealing, points: Sequence[Point] = ()) -> str:
     """An ``<svg>`` element: utilisation against processors, a curve for each ratio; ``points`` were
     measured in RTL."""
     with chart_style():
-        figure = Figure(figsize=(10.5, 3.7), layout="constrained")
+        figure = Figure(figsize=(_WIDTH, 3.7), layout="constrained")
         _utilisation_panels(figure.subplots(1, len(PANELS), sharey=True), model, points)
         _legend(figure, bool(points))
         return svg_element(figure, f"{model.model.name}: utilisation against processors, a curve "
                            "for each granularity ratio")
 
 
-def save_figure_4(models: Sequence[ModelDealing], path: Path) -> None:
-    """The same of all models, for a page that shows pictures only."""
-    figure = Figure(figsize=(10.5, 3.3 * len(models) + 0.4), layout="constrained")
+def save_figure_4(models: Sequence[ModelDealing], path: Path, points: Sequence[Point] = ()
+                  ) -> None:
+    """The same of all models, for a page that shows pictures only; ``points`` each where its model
+    is."""
+    figure = Figure(figsize=(_WIDTH, 3.3 * len(models) + 0.4), layout="constrained")
     panels = figure.subplots(len(models), len(PANELS), squeeze=False, sharey=True)
     for row, model in zip(panels, models, strict=True):
-        _utilisation_panels(row, model, ())
-    _legend(figure, False)
+        _utilisation_panels(row, model, points_of(model, points))
+    _legend(figure, bool(points))
     figure.savefig(path, dpi=100, metadata={"Software": None})
+
+
+def points_of(model: ModelDealing, points: Sequence[Point]) -> list[Point]:
+    """Those that were measured of ``model``."""
+    return [point for point in points if point.model == model.model.name]
 
 
 def _utilisation_panels(panels: Sequence[Axes], model: ModelDealing, points: Sequence[Point]
@@ -92,7 +102,7 @@ def _legend(figure: Figure, measured: bool) -> None:
 def figure_5(models: Sequence[ModelDealing]) -> str:
     """An ``<svg>`` element: relative time against ratio, a curve for each number of processors."""
     with chart_style():
-        figure = Figure(figsize=(5.2 * len(models), 3.6), layout="constrained")
+        figure = Figure(figsize=(max(_WIDTH, 5.2 * len(models)), 3.6), layout="constrained")
         panels = figure.subplots(1, len(models), squeeze=False, sharey=True)[0]
         colors = colormaps["viridis"]
         for axes, model in zip(panels, models, strict=True):

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...reports.page import page_environment
 from ...support.any_characters import readable
-from .charts import figure_4, figure_5, overlap_chart, save_figure_4
+from .charts import figure_4, figure_5, overlap_chart, points_of, save_figure_4
 from .claims import claims_of, claims_of_overlap, summary
 from .dealing.cures import GOES_ON
 from .ellsworth import Ellsworth
@@ -34,7 +34,7 @@ def write_ellsworth(found: Ellsworth, folder: Path) -> None:
     page, plain, picture = FIGURE_FILES
     (folder / plain).write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     (folder / page).write_text(readable(ellsworth_page(found, facts)), encoding="utf-8")
-    save_figure_4(found.models, folder / picture)
+    save_figure_4(found.models, folder / picture, found.points)
 
 
 def ellsworth_page(found: Ellsworth, facts: dict[str, Any]) -> str:
@@ -45,9 +45,8 @@ def ellsworth_page(found: Ellsworth, facts: dict[str, Any]) -> str:
         warnings=[],
         verdicts=summary(found.models, overlaps),
         point_table=point_table(found.points) if found.points else None,
-        scenes=[(model, figure_4(model, [point for point in found.points
-                                         if point.model == model.model.name]),
-                 claims_of(model), utilisation_table(model)) for model in found.models],
+        scenes=[(model, figure_4(model, points_of(model, found.points)), claims_of(model),
+                 utilisation_table(model)) for model in found.models],
         model_table=model_table(found),
         cure_table=cure_table(found.models) if facts["cures"] else None,
         goes_on=GOES_ON,

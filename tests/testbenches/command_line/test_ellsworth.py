@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from golden_machine import GoldenMachine
+from PIL import Image, ImageColor
 from refusals import refusal
 
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.figures.ellsworth import in_rtl, overlap
+from cardcage.testbenches.figures.ellsworth.charts import POINT_COLOR
 from cardcage.testbenches.figures.ellsworth.claims import SQUARE
 from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES
 from cardcage.testbenches.figures.ellsworth.dealing.models import FigureModel
@@ -52,6 +56,13 @@ def run(*arguments):
     return CliRunner().invoke(main, ["figures", *map(str, arguments)])
 
 
+def squares(path):
+    """Whether the picture has any in the colour of what was measured."""
+    with Image.open(path) as picture:
+        pixels = np.asarray(picture.convert("RGB"))
+    return (pixels == ImageColor.getrgb(POINT_COLOR)).all(axis=2).any()
+
+
 def test_files_and_facts(place):
     result = run(*SMALL, "--model", "tetra", "--no-rtl", "--out", "out/page")
     assert result.exit_code == 0, result.output
@@ -74,7 +85,7 @@ def test_files_and_facts(place):
     page = (place / "out/page/ellsworth.html").read_text("utf-8")
     assert page.count("<svg") == 4 and "http" not in page.replace("http-equiv", "")
     assert "in RTL" not in page and SQUARE in page
-    assert (place / "out/page/ellsworth.png").read_bytes().startswith(b"\x89PNG")
+    assert not squares(place / "out/page/ellsworth.png")
     for claim in (*facts["claims"], *facts["overlap_claims"]):
         assert claim["claim"] in result.stdout
     for line in facts["findings"]:
@@ -92,6 +103,9 @@ def test_with_machines(place, machine):
                for point in facts["points"])
     page = (place / "cardcage-out/ellsworth.html").read_text("utf-8")
     assert "in RTL" in page and "every count as golden" in page
+    assert squares(place / "cardcage-out/ellsworth.png")
+    # Of one model as well, no chart is so narrow that the page blows its type up.
+    assert min(map(float, re.findall(r'viewBox="0 0 ([0-9.]+) ', page))) > 500
 
 
 def test_a_difference_is_status_1(machine):

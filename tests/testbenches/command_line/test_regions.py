@@ -82,7 +82,7 @@ def test_the_help_of_commands_with_several_machines():
     assert "4x(PMM)/8x8" in compared and "--balance" in compared
     assert " --regions " not in compared
     bench = " ".join(run("bench", "--help").stdout.split())
-    assert "--regions none,16x8" in bench and "--balance WHAT" in bench
+    assert "--regions none,8x16" in bench and "--balance WHAT" in bench
 
 
 def test_the_options_in_words():

@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +21,7 @@ from cardcage.testbenches.reports.sequence_report import (
     SEQUENCE_FILES,
     animated_png,
     strip_places,
+    write_sequence_report,
 )
 
 TINY = ["--cards", "PM", "--size", "16x16", "--engine", "pysim"]
@@ -49,6 +51,22 @@ def test_figures(rendering):
     for one, other in pairwise(facts["frames"]):
         assert one["first_scan"] + one["scans"] == other["first_scan"]
     json.dumps(facts)
+
+
+def test_scans_that_the_machine_does_not_count(rendering, tmp_path):
+    first, *others = rendering.frames
+    views = [View((1.0, 2.0))] * 3
+    pages = []
+    for waited in (0, 3):
+        frames = [replace(first, scans=first.scans + waited, scans_before_next_start=waited),
+                  *others]
+        write_sequence_report(rendering.shown, frames, views, tmp_path)
+        pages.append(" ".join((tmp_path / "report.html").read_text("utf-8").split()))
+        facts = json.loads((tmp_path / "report.json").read_text("utf-8"))
+        assert [each["scans_before_next_start"] for each in facts["frames"]] == [waited, 0, None]
+    assert "not yet begun" not in pages[0]
+    assert ("1 picture stayed while the next one was not yet begun, for 3 scans in all" in pages[1]
+            and "leaves these out: 0." in pages[1])
 
 
 def test_the_animation_is_what_left_the_pins(rendering):

@@ -60,8 +60,12 @@ def test_each_in_its_turn(cards, fields, options):
     assert frames[1].simulation.repeated_scans >= 1 and frames[0].scans >= 2
     for one, other in pairwise(frames):
         assert one.first_scan + one.scans == other.first_scan
-        if options.get("depths") != "all" and not fields.get("retain"):  # it begins at once
-            assert one.scans == 1 + other.simulation.repeated_scans
+        assert one.scans == 1 + one.scans_before_next_start + other.simulation.repeated_scans
+        if options.get("depths") == "all":  # and the host takes its time
+            assert one.scans_before_next_start >= 1
+        elif not fields.get("retain"):  # the next one begins at once
+            assert one.scans_before_next_start == 0
+    assert frames[-1].scans_before_next_start is None
     compared = [frame.comparison.depths_compared for frame in frames]
     everything = SIZE["width"] * SIZE["height"]
     assert compared == [everything if options.get("depths") == "all" else 0] * 3 + [everything]
@@ -78,6 +82,9 @@ def test_a_bus_merges_while_the_next_picture_is_drawn(stall_seed):
     assert [bool(frame.simulation.work) for frame in frames] == [False, False, False, True]
     for one, other in pairwise(frames):
         assert one.first_scan + one.scans == other.first_scan
+        # The start of the next picture is taken before this one is shown.
+        assert one.scans_before_next_start == 0
+        assert one.scans < 1 + other.simulation.repeated_scans
     asked = frames_of(configuration, stall_seed=stall_seed)
     assert frames[-1].first_scan < asked[-1].first_scan
 

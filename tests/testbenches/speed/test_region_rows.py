@@ -12,6 +12,7 @@ from cardcage.golden.balancing.region_counts import region_counts, utilisation
 from cardcage.golden.balancing.region_grid import RegionGrid
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.organisations.region_table import packed_table
+from cardcage.golden.reference.exact import draw
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.speed.cases import case_lists
 from cardcage.testbenches.speed.machines import MachineAxes, bench_machines
@@ -57,6 +58,40 @@ def test_a_case_is_drawn_by_the_table_of_its_own_frame(tmp_path):
     row = rows["random_bbox16", True, 16]
     assert row["predicted_cycles"] == clocks[1] - clocks[0]
     assert row["region_utilisation"] == utilisation(counts, table, 16)
+
+
+def test_diagonal_slivers_want_low_regions():
+    """A visit walks all rows that the box has in a region, so that regions twice as high gain
+    nothing."""
+    case = case_lists("sliver_diag_480")
+    axes = MachineAxes(elements=(16,), regions=(None, (8, 16), (16, 8)))
+    interlaced, low, high = (
+        clocks_a_triangle(machine.configuration, case) for machine in bench_machines(axes))
+    assert low <= 90 < 0.8 * interlaced
+    assert high > 1.5 * low
+
+
+def clocks_a_triangle(configuration, case):
+    """Clocks a triangle, by the cycle model alone."""
+    table = None
+    if configuration.regions is not None:
+        counts = region_counts(case.frame, RegionGrid.of(configuration.dealt_regions)).clocks
+        table = packed_table(counts, 16, configuration.slots)
+    once, twice = (predict_cycles(configuration, listed, table=table).cycles
+                   for listed in (case.once, case.twice))
+    return (twice - once) / case.once.triangles
+
+
+def test_a_shuffled_mesh_is_the_same_picture():
+    """Its triangles have other numbers, which decide between equal depths; the mesh has none that
+    would be seen."""
+    in_order, shuffled = (case_lists("mesh", order) for order in ("visible", "random"))
+    assert (in_order.once.position != shuffled.once.position).any(axis=(1, 2)).mean() > 0.99
+    for one, other in ((in_order.once, shuffled.once), (in_order.frame, shuffled.frame)):
+        expected, picture = draw(one), draw(other)
+        assert len(np.unique(expected.depth)) > 1000
+        np.testing.assert_array_equal(picture.color, expected.color)
+        np.testing.assert_array_equal(picture.depth, expected.depth)
 
 
 def test_nothing_to_draw_along():

@@ -182,7 +182,9 @@ def test_all_is_what_no_option_restricts(tmp_path):
 
 def test_the_mesh_can_be_looked_at_from_elsewhere(tmp_path):
     view = ["--view", "90,10", "--zoom", "1.5", "--cull", "--light", "0,0,1"]
-    bench("mesh", *view, "--engine", "model", "--elements", "1", "--json", tmp_path / "b.json")
+    said = bench("mesh", *view, "--engine", "model", "--elements", "1", "--json",
+                 tmp_path / "b.json").output
+    assert "set-up by the host; mesh in list order\n" in said
     [row] = json.loads((tmp_path / "b.json").read_text())["rows"]
     assert row["case"] == "mesh --view 90,10 --zoom 1.5 --cull --light 0,0,1"
     looking = MachineOptions(view=(90.0, 10.0), zoom=1.5, cull=True, light=(0.0, 0.0, 1.0))
