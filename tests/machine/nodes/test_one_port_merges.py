@@ -24,8 +24,7 @@ CAGES = {
     "one unit": ("2x(PMT)", {}),
     "units that alternate along rows": ("4x(PMMT)", {"skew": True}),
     "two elements": ("4x(PMPMT)", {}),
-    "four units": ("3x(PMMMMT)", {}),
-    "a run of the list for each of eight": ("8x(PMMT)", {"packet": "contiguous"}),
+    "four units, a run of the list for each": ("3x(PMMMMT)", {"packet": "contiguous"}),
 }
 
 

@@ -52,7 +52,6 @@ def machine(display_list, cards, **options):
 CAGES = {
     "two of one unit, in turn": ("2x(PMT)", {"packet": 1}),
     "three of two, a run each": ("3x(PMMT)", {"packet": "contiguous"}),
-    "four of two, in turn": ("4x(PMMT)", {"packet": 1}),
     "four, two ports": ("4x(PMMT)", {"packet": 2, "memory_ports": 2}),
     "three of two elements, two ports": ("3x(PMPMT)", {"packet": 3, "memory_ports": 2}),
     "unequal shares of a node": ("2x(PMPMMMT)", {"packet": 1}),

@@ -161,8 +161,7 @@ def simulator():
 
 
 @pytest.mark.parametrize("options", [
-    ["--cards", "PM", "--setup", "small"],
-    ["--cards", "PMM", "--skew", "--memory-ports", "1", "--words", "4"],
+    ["--cards", "PMM", "--setup", "small", "--skew", "--memory-ports", "1", "--words", "4"],
     ["--cards", "3x(PM)", "--regions", "2x2", "--memory-ports", "2"],
 ], ids=lambda options: "-".join(options).replace("--", ""))
 def test_from_export_to_the_verdict(tmp_path, simulator, options):
