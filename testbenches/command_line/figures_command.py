@@ -27,7 +27,8 @@ PAPERS = ("cox-hanrahan", "ellsworth", "blazek")
 @click.option("--frames", type=int, metavar="N",
               help="ellsworth: of each model; by default as many as a few minutes allow.")
 @click.option("--model", "models", multiple=True, metavar="SCENE",
-              help="ellsworth: a mesh to turn in place of the two models; may be given again.")
+              help="ellsworth: a mesh or scene file to turn in place of the two models; may be "
+              "given again.")
 @click.option("--rtl/--no-rtl", "simulate", default=True, show_default=True,
               help="Simulate the machines whose points are marked, and the cages of a table: "
               "minutes the first time.  The rest are golden and cycle models.")

@@ -27,13 +27,13 @@ class ObjectDefinition:
     ``recursion``  how often each triangle of a primitive becomes four; None: as usual for the kind
     ``seed``       start of the random numbers
     ``line``       in the scene file
-    ``column``     in that line, of the mesh file's name; None where there is none
+    ``column``     in that line, of the mesh file's name; of ``obj`` where there is none
     """
 
     kind: str
     seed: int
     line: int
-    column: int | None = None
+    column: int = 1
     path: Path | None = None
     rotation: Vector = (0.0, 0.0, 0.0)
     scale: Vector = (1.0, 1.0, 1.0)

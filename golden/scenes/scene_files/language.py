@@ -75,7 +75,7 @@ VIEW_WORDS = {word.name: word for word in (
     Word("target", "target", vector(-FAR, FAR),
          "What is in the middle of the picture, in perspective.", "target 0,0.5,0"),
     Word("up", "up", vector(-FAR, FAR, direction=True),
-         "What is up in the picture, in perspective.", "up 0,0,1"),
+         "What is up in the picture, in perspective.", "up 1,1,0"),
     Word("fov", "field_of_view", number(1, 170),
          "Degrees across the smaller side of the picture, in perspective.", "fov 50"),
     Word("size", "size", SIZE, "Pixels of the picture where --size says nothing.",
@@ -107,8 +107,9 @@ OBJECT_WORDS = {word.name: word for word in (
          "obj sphere num 20 seed 7"),
 )}
 
-#: What an object may be; decided: which five Blazek's figure 8 shows is not in the text, which
-#: names conics, cubics, cylinders, spheroids and pyramids.
+#: What an object may be.  Decided: the first five are what Blazek's figure 8 shows.  His text says
+#: that they are five, but names conics, cubics, cylinders and spheroids there, and elsewhere
+#: pyramids.
 KINDS = {
     "sphere": "a ball, from an octahedron",
     "cube": "twelve triangles",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...specification.errors import InputError
+from ..camera import Camera
 from .description import ObjectDefinition, SceneDescription
 from .language import KINDS, MESH, OBJECT_WORDS, PERSPECTIVE_WORDS, VIEW_WORDS, Word
 from .values import WrongValueError, nearest
@@ -35,22 +37,25 @@ def read_scene_file(path: Path) -> SceneDescription:
         raise InputError(f"{path}: cannot be read: {reason}") from None
     if len(data) > MOST_BYTES:
         raise InputError(f"{path}: more than {MOST_BYTES >> 20} MB is no scene file; is it a mesh?")
+    data = data.removeprefix(codecs.BOM_UTF8)
     try:
-        text = data.decode("utf-8-sig")
+        text = data.decode("utf-8")
     except UnicodeDecodeError as error:
-        line = data[:error.start].count(b"\n") + 1
-        raise InputError(f"{path}: line {line}: is no text in UTF-8; save it as such") from None
+        *before, last = f"{data[:error.start].decode('utf-8')}?".splitlines()
+        raise InputError(f"{path}: line {len(before) + 1}, column {len(last)}: is no text in "
+                         "UTF-8; save it as such") from None
     return parse_scene_text(text, path)
 
 
 def parse_scene_text(text: str, path: Path) -> SceneDescription:
     """What ``text`` says, the contents of the file ``path``.  Raises ``InputError`` likewise."""
     parser = _Parser(path)
+    number = 1
     for number, line in enumerate(text.splitlines(), 1):
         tokens = list(_tokens(line, number))
         if tokens:
             parser.definition(tokens)
-    return parser.finished()
+    return parser.finished(number)
 
 
 def _tokens(line: str, number: int) -> Iterator[_Token]:
@@ -83,16 +88,31 @@ class _Parser:
                       else nearest(name, [OBJECT, *VIEW_WORDS]))
             raise self._wrong(first, f"{first.text!r} is no definition; {remedy}")
 
-    def finished(self) -> SceneDescription:
-        """All of it, once no line follows."""
+    def finished(self, last_line: int) -> SceneDescription:
+        """All of it, once no line follows ``last_line``."""
         if self._view.get("projection") != "perspective":
             for name in PERSPECTIVE_WORDS:
                 if name in self._places:
                     raise self._wrong(self._places[name], f"{name} is for pictures in perspective; "
                                       "leave it out, or add: projection perspective")
         if not self._objects:
-            raise InputError(f"{self._path}: obj: there is none; add a line such as obj sphere")
-        return SceneDescription(self._path, objects=tuple(self._objects), **self._view)
+            raise self._wrong(_Token("", last_line, 1),
+                              "obj: there is none; add a line such as obj sphere")
+        scene = SceneDescription(self._path, objects=tuple(self._objects), **self._view)
+        self._check_camera(scene)
+        return scene
+
+    def _check_camera(self, scene: SceneDescription) -> None:
+        """Where the eye is, what it looks at and what is up are right or wrong only together; what
+        is wrong is told of the definition that most likely has to change."""
+        try:
+            Camera(scene.eye, scene.target, scene.up, scene.field_of_view)
+        except InputError as error:
+            problem = str(error).removeprefix("camera: ")
+            words = [name for name in ("up", "target", "eye") if name in self._places]
+            if problem.startswith("target") and len(words) > 1 and words[0] == "up":
+                del words[0]
+            raise self._wrong(self._places[words[0]], problem) from None
 
     def _view_word(self, word: Word, first: _Token, rest: list[_Token]) -> None:
         if word.name in self._places:

@@ -57,7 +57,7 @@ def placed_objects(description: SceneDescription, most_triangles: int) -> Placed
     mesh, position, color = [], [], []
     triangles = 0
     for definition in description.objects:
-        where = f"{description.path}: line {definition.line}"
+        where = f"{description.path}: line {definition.line}, column {definition.column}"
         key = _mesh_key(definition)
         if key not in numbers:
             _check_triangles(where, triangles + _fewest(definition), most_triangles)
@@ -66,8 +66,6 @@ def placed_objects(description: SceneDescription, most_triangles: int) -> Placed
                 mesh_of_kind = _scaled(_unit_mesh(definition), np.array(definition.scale))
                 meshes.append(turned(mesh_of_kind, _rotation(definition.rotation)))
             except InputError as error:
-                if definition.column is not None:
-                    where += f", column {definition.column}"
                 raise InputError(f"{where}: {error}") from None
         triangles += definition.number * meshes[numbers[key]].triangles
         _check_triangles(where, triangles, most_triangles)

@@ -36,6 +36,7 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
     free = by_axis[TESSELLATING]
     scene = Scene.of(size, 0, 1)
     drawn, sending = float(scene.polygon_drawing.mean()), COSTS.byte * COSTS.polygon_bytes
+    pixels = scene.template.whole.pixels.sum() / scene.template.polygons
     meetings = scene.work(MOST, "lines").polygons.sum() / scene.template.polygons
     share = (1 / NEARLY - 1) / (MOST - 1 / NEARLY)
     lines = [
@@ -48,7 +49,7 @@ def _of_his(sensitivity: Sequence[Sensitivity], size: Size) -> list[str]:
         f"drawing: {share * drawn / MICROSECOND:.1f} µs a polygon.  By chapter V it takes longer "
         f"than to send one, {sending / MICROSECOND:.0f} µs.  Both hold only where drawing a "
         f"polygon takes {1000 * sending / share:.0f} ms or more: of "
-        f"{scene.template.whole.pixels.sum() / scene.template.polygons:.1f} pixels here.",
+        f"{float(f'{pixels:.2g}'):g} pixels here.",
         f"Even where tessellating is all but free ({axis_of(TESSELLATING).values[0]:g} µs) "
         f"interlaced lines come to a speed-up of {free[LINES][0]:.1f} on {MOST} nodes: a polygon "
         f"is set up by each node that has a line of it, {meetings:.1f} on average.  Strips come to "

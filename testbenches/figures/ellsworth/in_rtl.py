@@ -77,8 +77,8 @@ class PointJob:
     engine: str
 
     def run(self) -> Point:
-        return Point(**measured_once([package_hash(), "regions in RTL", repr(self)],
-                                     self._measure))
+        return Point(**measured_once([package_hash(), "regions in RTL", repr(self),
+                                      self.model.identity(self.size)], self._measure))
 
     def _measure(self) -> dict[str, Any]:
         lists = list(self.model.lists(self.size, 0, POINT_FRAMES, lit=True))

@@ -90,6 +90,7 @@ def test_files_and_facts(place):
             assert claim["claim"] in result.stdout
     for line in facts["findings"]:
         assert line in result.stdout
+    assert any("ms or more: of 0.03 pixels here." in line for line in facts["findings"])
 
 
 @pytest.mark.parametrize(("arguments", "word"), [

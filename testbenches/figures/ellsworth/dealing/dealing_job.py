@@ -100,7 +100,8 @@ class DealingJob:
     count: int
 
     def run(self) -> dict[str, Any]:
-        return measured_once([package_hash(), "regions dealt out", repr(self)], self._measure)
+        return measured_once([package_hash(), "regions dealt out", repr(self),
+                              self.model.identity(self.size)], self._measure)
 
     def _measure(self) -> dict[str, Any]:
         frames = frame_counts(self.model, self.size, self.first - BEFORE, self.count + BEFORE)

@@ -10,22 +10,24 @@ from numpy.typing import NDArray
 
 from .....golden.reference.coverage import Triangles
 from .....golden.scene_display_list import LoadedScene, make_display_list, read_scene
-from .....golden.scenes.camera import View, framing_camera, seen_direction, transform
+from .....golden.scenes.camera import View, framing_camera, transform
 from .....golden.scenes.mesh import Mesh
 from .....golden.scenes.mesh_display_list import display_list_of_corners
 from .....golden.scenes.quantise import PictureFormat
 from .....golden.specification.display_list import DisplayList
 from .....golden.specification.errors import InputError
 from .....golden.specification.sampling_grid import Grid
+from ....atlas.points.atlas_scene import AtlasScene
+from ....machine_options import MachineOptions
 
 Size = tuple[int, int]
 
 
 @dataclass(frozen=True)
 class FigureModel:
-    """A mesh that turns by ``turn`` degrees a frame about what is up.
+    """What turns by ``turn`` degrees a frame about what is up.
 
-    ``scene``       a scene's name or file, as for any command; a mesh
+    ``scene``       a scene's name or file, as for any command; a mesh or a scene file
     ``zoom``        how much larger than framed it is seen
     ``best_ratio``  what the paper finds best for the model in whose place it is, if it is in one's
     """
@@ -39,31 +41,36 @@ class FigureModel:
 
     def views(self, first: int, count: int, loaded: LoadedScene) -> Iterator[View]:
         """Of so many frames; those before the first, which go on backwards, as well."""
-        assert loaded.mesh is not None
-        azimuth, elevation = seen_direction(loaded.mesh)
+        assert loaded.direction is not None
+        azimuth, elevation = loaded.direction
         for frame in range(first, first + count):
             yield View((azimuth + self.turn * frame, elevation), self.zoom)
 
     def lists(self, size: Size, first: int, count: int, *, lit: bool = False
               ) -> Iterator[DisplayList]:
-        """Of such frames, back faces left out; without colours unless ``lit``, which takes most of
-        the time.  Raises ``InputError`` for a scene that does not turn."""
+        """Of such frames, back faces left out; a mesh without colours unless ``lit``, which takes
+        most of the time.  Raises ``InputError`` for a scene that does not turn."""
         loaded = self.load()
-        assert loaded.mesh is not None
         width, height = size
-        faces = loaded.mesh.faces[~loaded.mesh.degenerate()]
+        mesh = loaded.mesh
+        faces = None if mesh is None else mesh.faces[~mesh.degenerate()]
         for view in self.views(first, count, loaded):
-            if lit:
+            if lit or mesh is None or faces is None:
                 yield make_display_list(loaded, width=width, height=height, view=view,
                                         shading="flat", cull=True).display_list
             else:
-                yield _unlit(loaded.mesh, faces, view, PictureFormat(width, height))
+                yield _unlit(mesh, faces, view, PictureFormat(width, height))
 
     def load(self) -> LoadedScene:
         loaded = read_scene(self.scene)
-        if loaded.mesh is None:
+        if loaded.direction is None:
             raise InputError(f"--model: {self.scene} is no mesh and cannot be turned; take a mesh")
         return loaded
+
+    def identity(self, size: Size) -> str:
+        """Of the files that it is made from, so that nothing is kept under a changed one's name.
+        Raises ``InputError``."""
+        return AtlasScene.of(self.scene, size, MachineOptions()).identity
 
 
 def _unlit(mesh: Mesh, faces: NDArray[np.int64], view: View, picture: PictureFormat

@@ -148,7 +148,7 @@ def test_what_is_asked_for_goes_before_what_the_file_says(tmp_path):
 
 
 def test_too_many_triangles_are_refused_before_they_are_made(tmp_path):
-    with pytest.raises(InputError, match=r"a\.scene: line 1: makes 5242880000 triangles"):
+    with pytest.raises(InputError, match=r"a\.scene: line 1, column 1: makes 5242880000 triangles"):
         scene(tmp_path, "obj sphere recursion 8 num 10000")
 
 

@@ -4,8 +4,11 @@ import random
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from cardcage.golden.reference.exact import draw
+from cardcage.golden.scenes.quantise import PictureFormat
 from cardcage.golden.scenes.scene_files.description import ObjectDefinition, SceneDescription
 from cardcage.golden.scenes.scene_files.examples import EXAMPLE_FOLDER, EXAMPLES, example_path
 from cardcage.golden.scenes.scene_files.language import (
@@ -17,6 +20,8 @@ from cardcage.golden.scenes.scene_files.language import (
     reference,
 )
 from cardcage.golden.scenes.scene_files.parse import parse_scene_text, read_scene_file
+from cardcage.golden.scenes.scene_files.placed_objects import placed_objects
+from cardcage.golden.scenes.scene_files.scene_file import SceneFile
 from cardcage.golden.specification.errors import InputError
 
 PATH = Path("folder/a.scene")
@@ -95,7 +100,15 @@ def test_a_byte_order_mark_is_passed_over(tmp_path):
     ("outfile ../x\nobj cube", "outfile: '../x' is no plain name"),
     ("size 64\nobj cube", "size: '64' is no size such as 512x512"),
     ("size 64x5000\nobj cube", "size: '5000' is not a whole number from 1 to 4096"),
-    ("ambient 40", "obj: there is none; add a line such as obj sphere"),
+    ("ambient 40\n# end", "line 2, column 1: obj: there is none; add a line such as obj sphere"),
+    ("", "line 1, column 1: obj: there is none"),
+    ("projection perspective\ntarget 0,1,2\n eye 0,1,2\nup 0,0,1\nobj cube",
+     "line 2, column 1: target: is where the eye is; move one of them"),
+    ("projection perspective\nobj cube\n eye 0,0,0",
+     "line 3, column 2: target: is where the eye is"),
+    ("projection perspective\neye 0,0,3\n  up 0,0,1\nobj cube",
+     "line 3, column 3: up: is along the line of sight; choose another direction"),
+    ("projection perspective\neye 0,3,0\nobj cube", "line 2, column 1: up: is along the line of"),
 ])
 def test_a_mistake_is_one_line_with_its_place_and_a_remedy(text, message):
     with pytest.raises(InputError) as caught:
@@ -105,9 +118,9 @@ def test_a_mistake_is_one_line_with_its_place_and_a_remedy(text, message):
 
 
 def test_a_file_that_is_none_is_one_line(tmp_path):
-    (tmp_path / "a.scene").write_bytes(b"obj cube\n\xff\xfe")
+    (tmp_path / "a.scene").write_bytes("\ufeffobj cube\nné ".encode() + b"\xff\xfe")
     for path, message in ((tmp_path, "cannot be read"), (tmp_path / "b.scene", "cannot be read"),
-                          (tmp_path / "a.scene", "line 2: is no text in UTF-8")):
+                          (tmp_path / "a.scene", "line 2, column 4: is no text in UTF-8")):
         with pytest.raises(InputError, match=message):
             read_scene_file(path)
 
@@ -171,6 +184,31 @@ def test_ten_thousand_random_texts_are_read_or_refused_in_one_line():
             parse(wrong)
         except InputError as error:
             refused += 1
-            assert re.match(r"folder/a\.scene: (line \d+, column \d+: |obj: )", str(error)), wrong
+            assert re.match(r"folder/a\.scene: line \d+, column \d+: ", str(error)), wrong
             assert "\n" not in str(error)
     assert 2_000 < refused < 4_900
+
+
+def test_random_scenes_draw():
+    """A few of the valid ones, small: objects cover pixels, and what is covered by nothing has the
+    background, the edge of an orthographic picture the overlay's colour."""
+    print("seed", SEED)
+    numbers = random.Random(SEED)
+    covering = framed = 0
+    for _ in range(20):
+        text = valid_scene(numbers)
+        scene = parse(text)
+        file = SceneFile(scene, placed_objects(scene, 100_000))
+        width, height = scene.size or (numbers.randint(8, 24), numbers.randint(8, 24))
+        picture = draw(file.display_list(PictureFormat(width, height)))
+        assert picture.color.shape == (height, width, 3), text
+        covered = picture.winner >= 0
+        assert (picture.color[~covered] == (scene.background or (0, 0, 0))).all(), text
+        if file.orthographic and scene.overlay is not None:
+            framed += 1
+            edge = np.ones((height, width), bool)
+            edge[1:-1, 1:-1] = False
+            assert (picture.color[edge] == scene.overlay).all(), text
+            covered &= ~edge
+        covering += covered.any()
+    assert covering >= 15 and framed >= 3

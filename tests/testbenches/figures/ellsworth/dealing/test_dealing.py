@@ -8,7 +8,7 @@ import pytest
 
 from cardcage.golden.balancing.region_counts import counts_of, utilisation
 from cardcage.golden.organisations.region_table import packed_table, static_table
-from cardcage.golden.scene_display_list import make_display_list
+from cardcage.golden.scene_display_list import make_display_list, read_scene
 from cardcage.golden.scenes.camera import View
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.figures.ellsworth.dealing.cures import CURES
@@ -119,3 +119,22 @@ def test_models():
     assert virus.scene == "capsid:count=394,depth=4" and figure_models(3)[1].frames == 3
     with pytest.raises(InputError, match="random is no mesh and cannot be turned; take a mesh"):
         FigureModel("random", "random", 1, 4.5).load()
+
+
+@pytest.mark.parametrize("view", ["", "projection perspective\neye 0,1,4\n"])
+def test_a_scene_file_turns_as_render_turns_it(tmp_path, view):
+    path = tmp_path / "small.scene"
+    path.write_text(f"{view}obj cube scale 0.4 num 3\n")
+    model = FigureModel("small", str(path), 3, 20)
+    loaded = read_scene(path)
+    azimuth, elevation = loaded.direction
+    lists = list(model.lists(SIZE, -1, 3))
+    assert not np.array_equal(lists[0].position, lists[2].position)
+    for number, display_list in zip((-1, 0, 1), lists, strict=True):
+        wanted = make_display_list(
+            loaded, width=SIZE[0], height=SIZE[1], shading="flat", cull=True,
+            view=View((azimuth + 20 * number, elevation))).display_list
+        assert np.array_equal(display_list.position, wanted.position) and wanted.triangles >= 6
+    before = model.identity(SIZE)
+    path.write_text(f"{view}obj cube scale 0.3 num 3\n")
+    assert model.identity(SIZE) != before
