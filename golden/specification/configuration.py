@@ -109,7 +109,7 @@ class MachineConfiguration(MakingFields, DealingFields):
 
     ``regions``   columns and rows of them (``Regions``); None interlaces pixels instead
     ``slots``     regions that each processing element has room for; 0 means a quarter more than an
-                  even share
+                  even share, or that share where ``objects`` are made in elements
     ``balance``   what a processing element counts of each of its regions, for the next picture's
                   table: ``"triangles"``, ``"clocks"``, or with ``"static"`` nothing
     ``balancer``  who makes that table of the counts: ``"host"``, or the controller, ``"hardware"``

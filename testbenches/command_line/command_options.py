@@ -234,7 +234,7 @@ _REGIONS_OPTION = click.option(
 _DEALING_OPTIONS = (
     click.option("--slots", type=click.IntRange(1, MAXIMUM_REGIONS), metavar="N",
                  help="With regions: how many each processing element has room for.  [default: a "
-                 "quarter more than an even share]"),
+                 "quarter more than an even share; that share with --objects elements]"),
     click.option("--balance", type=click.Choice(get_args(Policy)),
                  help="With regions: what is counted of each in a picture, by which they are dealt "
                  "out for the next one: triangles, or the clocks these take it; learnt are clocks, "

@@ -65,7 +65,10 @@ class DealingFields(Widths):
             wide, high = (1 << inside.unit_mask(axis).bit_length() for axis in "xy")
             raise InputError(f"regions: {1 << regions.x_bits}x{1 << regions.y_bits} pixels do not "
                              f"spread over {inside.units} memory units; take {wide}x{high} or more")
-        slots = self.slots or default_slots(regions.count, elements)
+        # Whoever passes objects on keeps the table of the boot: no element gets another region.
+        default = (regions.even_share(elements) if self.objects == "elements" else
+                   default_slots(regions.count, elements))
+        slots = self.slots or default
         check_whole("slots", slots, 1, regions.count)
         if slots * elements < regions.count:
             raise InputError(f"slots: {slots} in each of {elements} processing elements do not "

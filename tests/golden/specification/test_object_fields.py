@@ -53,3 +53,11 @@ def test_all_commands_have_one_length():
         plain = MachineConfiguration(cards, **SIZE, setup="hardware", fraction_bits=0)
         of_nodes = MachineConfiguration(cards, **SIZE, **OBJECTS, objects="nodes", fraction_bits=0)
         assert commands.command_words(plain) == commands.command_words(of_nodes)
+
+
+def test_elements_that_pass_objects_on_have_room_for_their_own_regions_alone():
+    """Their table stays; where it is made anew for each picture there is a quarter more."""
+    fields = {"cards": "4x(PM)", "width": 16, "height": 16, "regions": (4, 4)}
+    assert MachineConfiguration(**fields).slots == 5
+    passing = MachineConfiguration(**fields, **OBJECTS, objects="elements", balance="static")
+    assert passing.slots == 4
