@@ -39,7 +39,7 @@ DEFAULT_SIZES = ((64, 64), (256, 256))
 DEFAULT_FRACTION_BITS: tuple[FractionBits, ...] = (0, 2, "exact")
 
 #: Scenes or cages that a warning names.
-MOST_NAMES = 6
+MOST_NAMES = 12
 
 #: Ports of a memory unit's RAM: as FPGAs have them, and what the cycle model knows to the clock.
 DEFAULT_PORTS = 2
