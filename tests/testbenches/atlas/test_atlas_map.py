@@ -116,12 +116,14 @@ def test_every_word_of_a_chart_is_on_it(atlas):
     points = [replace(point, scene=replace(point.scene, name=name), fraction_bits=bits, cage=cage)
               for point in list(atlas.figures)[:1] for name in ("first", "second")
               for bits in (0, "exact") for cage in (
-                  Cage("PM"), Cage("PM", regions=(16, 16), objects="elements"))]
+                  Cage("PM"), Cage("PM", regions=(16, 16), objects="elements"),
+                  Cage("PM", objects="controller"))]
     [some] = list(atlas.figures.values())[:1]
     options = replace(SMALL, fraction_bits=(0, "exact"),
-                      cages=("PM", "PM/16x16@elements"))
+                      cages=("PM", "PM/16x16@elements", "PM@controller"))
     shown = replace(atlas, options=options, figures={
-        point: some for point in points if point.scene.name == "second" or not point.cage.objects})
+        point: some | ({"work": 10**25} if point.cage.objects else {})
+        for point in points if point.scene.name == "second" or not point.cage.objects})
     error, drawn = error_figure(shown), map_figure(shown)
     for figure in (error, drawn):
         canvas = FigureCanvasAgg(figure)
@@ -130,7 +132,8 @@ def test_every_word_of_a_chart_is_on_it(atlas):
         box = legend.get_window_extent()
         assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
     assert [text.get_text() for text in error.legends[0].get_texts()] == [
-        "host broadcast", "regions 16x16, objects in elements"]
+        "host broadcast", "regions 16x16, objects in elements",
+        "host broadcast, objects in controller"]
     assert error.get_suptitle() == "1 element at 16x16: the most elements, the largest size"
     for axes in drawn.axes:
         cell = axes.patches[0].get_window_extent()
