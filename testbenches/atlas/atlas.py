@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,6 +37,9 @@ DEFAULT_SIZES = ((64, 64), (256, 256))
 
 #: None, two, and as many as each scene needs.
 DEFAULT_FRACTION_BITS: tuple[FractionBits, ...] = (0, 2, "exact")
+
+#: Scenes or cages that a warning names.
+MOST_NAMES = 12
 
 #: Ports of a memory unit's RAM: as FPGAs have them, and what the cycle model knows to the clock.
 DEFAULT_PORTS = 2
@@ -151,14 +154,23 @@ class Atlas:
 
     @property
     def refused(self) -> list[str]:
-        """A line for each reason why there can be no such machine, and how many points have it."""
-        reasons: dict[tuple[str, str], int] = {}
+        """A line for each reason why there can be no such machine: how many points have it, of
+        which scenes and cages."""
+        reasons: dict[str, list[AtlasPoint]] = {}
         for point, failure in self.failures.items():
             if not failure.failed:
-                key = point.cage.label, failure.reason
-                reasons[key] = reasons.get(key, 0) + 1
-        return [f"{label}, {counted(count, 'point')}: {reason}"
-                for (label, reason), count in reasons.items()]
+                reasons.setdefault(failure.reason, []).append(point)
+        return [f"{_several(point.scene.name for point in points)} on "
+                f"{_several(point.cage.label for point in points)}, "
+                f"{counted(len(points), 'point')}: {reason}" for reason, points in reasons.items()]
+
+
+def _several(names: Iterable[str]) -> str:
+    """Each once, in their order; of many the first ones alone, and how many more there are."""
+    found = list(dict.fromkeys(names))
+    more = len(found) - MOST_NAMES
+    return ", ".join(found) if more <= 1 else (
+        f"{', '.join(found[:MOST_NAMES])} and {more:,} more")
 
 
 def make_atlas(options: AtlasOptions | None = None, *, out: str | Path | None = None,

@@ -5,17 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.textpath import TextPath
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
+from ..support.counted import counted
 from .atlas import Atlas
 from .atlas_map import MEASURES, Cell, Place, atlas_map, finest, kind_of, kinds
 from .points.atlas_point import AtlasPoint, Figures
 from .points.model_figures import LIMITS
+from .scene_names import short_names
 
 #: Of kinds of cages, in turn as they were asked for; those with lists are darker.
 KIND_COLORS = ("#8fb7dd", "#8ccfae", "#f0b671", "#c3a3dc", "#e79a93", "#86cbd1", "#d6cf7a",
@@ -33,8 +38,20 @@ MOST_ROWS = 60
 CELL_HEIGHT, MAKING_HEIGHT = 0.54, 0.72
 OBJECTS = ", objects"
 
-#: Characters of a scene's name beside the map.
-NAME = 22
+#: In inches, the least width of a cell of the map, and what is left free beside its words.
+CELL_WIDTH, CELL_MARGIN = 1.2, 0.16
+
+#: With more columns the four maps are one below another, or their words would be too small to read.
+MOST_COLUMNS = 4
+
+#: Of the words in a cell, in points: the kind of the best cage, and those below.
+BEST_SIZE, BELOW_SIZE = 8, 6.5
+
+#: Characters of a scene's name beside the map and above curves, and below the limits.
+NAME, LIMITS_NAME = 22, 16
+
+#: In inches, a column of the limits, of which a scene's name takes all but so much.
+LIMITS_WIDTH, LIMITS_MARGIN = 0.95, 0.12
 
 
 def kind_colors(atlas: Atlas) -> dict[str, tuple[float, float, float]]:
@@ -57,18 +74,48 @@ def map_figure(atlas: Atlas) -> Figure:
     columns = sorted({(cell.elements, cell.size) for cell in cells})
     making = any(OBJECTS in kind for kind in kinds(atlas))
     height = MAKING_HEIGHT if making else CELL_HEIGHT
-    figure = Figure(figsize=(2.6 + 2.4 * len(columns), 1.6 + 2 * height * max(2, len(scenes))),
+    width = max(CELL_WIDTH, 0.0, *(
+        CELL_MARGIN + _width(line, size, bold) for places in found.values()
+        for place in places.values() for words, size, bold in _words(place)
+        for line in words.split("\n")))
+    across = 1 if len(columns) > MOST_COLUMNS else 2
+    down = len(found) // across
+    figure = Figure(figsize=(2.6 + across * width * len(columns),
+                             0.2 + 0.7 * down + down * height * max(2, len(scenes))),
                     layout=ConstrainedLayoutEngine(wspace=0.03, hspace=0.04))
-    panels = figure.subplots(2, 2, sharex=True, sharey=True, squeeze=False)
+    panels = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
     colors = kind_colors(atlas)
     for axes, (name, places) in zip(panels.flat, found.items(), strict=True):
         _map(axes, places, scenes, columns, colors)
         axes.set_title(f"{MEASURES[name].best}: {MEASURES[name].unit}", fontsize=10, loc="left")
     shown = {place.best.kind for places in found.values() for place in places.values()}
-    figure.legend(handles=[Patch(color=color, label=kind) for kind, color in colors.items()
-                           if kind in shown], loc="outside lower center", ncols=5, frameon=False,
-                  fontsize=9)
+    _legend(figure, [Patch(color=color, label=kind) for kind, color in colors.items()
+                     if kind in shown], 9)
     return figure
+
+
+def _legend(figure: Figure, handles: Sequence[Artist], size: float) -> None:
+    """Below the figure, in as many columns as there is room for: no word of it is cut."""
+    widest = max((_width(str(handle.get_label()), size) for handle in handles), default=0.0)
+    # The mark of an entry and what is free around it are four and a half times its letters.
+    columns = int(figure.get_figwidth() * 0.96 / (widest + 4.8 * size / 72))
+    figure.legend(handles=list(handles), loc="outside lower center",
+                  ncols=max(1, min(5, columns)), frameon=False, fontsize=size)
+
+
+def _width(words: str, size: float, bold: bool = False) -> float:
+    """In inches."""
+    if not words.strip():
+        return 0.0
+    font = FontProperties(weight="bold" if bold else "normal")
+    return float(TextPath((0, 0), words, size=size, prop=font).get_extents().width) / 72
+
+
+def _words(place: Place) -> tuple[tuple[str, float, bool], ...]:
+    """In a cell of the map, from above: words, how large, and whether they are bold."""
+    ahead = "" if place.ahead is None else f"then {place.second}, ×{place.ahead:.2f}"
+    return ((_broken(place.best.kind), BEST_SIZE, True),
+            (f"{place.best.figure:,}", BELOW_SIZE, False), (_broken(ahead), BELOW_SIZE, False))
 
 
 def _map(axes: Axes, places: dict[Cell, Place], scenes: Sequence[str],
@@ -78,15 +125,14 @@ def _map(axes: Axes, places: dict[Cell, Place], scenes: Sequence[str],
         color = colors[place.best.kind]
         axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=color, edgecolor="white",
                                  linewidth=1.5))
-        ahead = "" if place.ahead is None else f"then {place.second}, ×{place.ahead:.2f}"
         ink = "white" if sum(color) < 1.45 else "black"
-        axes.text(x, y - 0.27, _broken(place.best.kind), ha="center", va="center", fontsize=8,
-                  color=ink, fontweight="bold")
-        for down, words in ((0.05, f"{place.best.figure:,}"), (0.32, _broken(ahead))):
-            axes.text(x, y + down, words, ha="center", va="center", fontsize=6.5, color=ink)
+        for down, (words, size, bold) in zip((-0.27, 0.05, 0.32), _words(place), strict=True):
+            axes.text(x, y + down, words, ha="center", va="center", fontsize=size, color=ink,
+                      fontweight="bold" if bold else "normal")
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(scenes) - 0.5, -0.5)
-    axes.set_yticks(range(len(scenes)), [scene[:NAME] for scene in scenes])
+    names = short_names(scenes, NAME)
+    axes.set_yticks(range(len(scenes)), [names[scene] for scene in scenes])
     axes.set_xticks(range(len(columns)), ["{} element{}\n{}x{}".format(
         elements, "s" * (elements > 1), *size) for elements, size in columns], fontsize=8)
     _bare(axes)
@@ -104,7 +150,9 @@ def limits_figure(atlas: Atlas) -> Figure:
               if point.fraction_bits == finest(atlas)}
     cages = list(dict.fromkeys(point.cage.label for point in points))[:MOST_ROWS]
     columns = list(dict.fromkeys((point.scene.name, point.scene.size) for point in points))
-    figure = Figure(figsize=(2.5 + 0.95 * max(4, len(columns)), 1.8 + 0.24 * max(4, len(cages))),
+    names = short_names([scene for scene, _ in columns], LIMITS_NAME)
+    width = max(LIMITS_WIDTH, 0.0, *(LIMITS_MARGIN + _width(name, 7) for name in names.values()))
+    figure = Figure(figsize=(2.5 + width * max(4, len(columns)), 1.8 + 0.24 * max(4, len(cages))),
                     layout="constrained")
     axes = figure.subplots()
     for point, figures in points.items():
@@ -118,13 +166,12 @@ def limits_figure(atlas: Atlas) -> Figure:
     axes.set_xlim(-0.5, len(columns) - 0.5)
     axes.set_ylim(len(cages) - 0.5, -0.5)
     axes.set_yticks(range(len(cages)), cages, fontsize=8)
-    axes.set_xticks(range(len(columns)), ["{}\n{}x{}".format(name[:12], *size)
-                                          for name, size in columns], fontsize=7)
+    axes.set_xticks(range(len(columns)), ["{}\n{}x{}".format(names[scene], *size)
+                                          for scene, size in columns], fontsize=7)
     _bare(axes)
     shown = {figures["limit"] for figures in points.values()}
-    figure.legend(handles=[Patch(color=color, label=limit) for limit, color in
-                           LIMIT_COLORS.items() if limit in shown],
-                  loc="outside lower center", ncols=6, frameon=False, fontsize=9)
+    _legend(figure, [Patch(color=color, label=limit) for limit, color in LIMIT_COLORS.items()
+                     if limit in shown], 9)
     return figure
 
 
@@ -139,7 +186,8 @@ def error_figure(atlas: Atlas) -> Figure | None:
     if len(set(atlas.options.fraction_bits)) < 2:
         return None
     size = max(atlas.options.sizes, key=lambda size: size[0] * size[1])
-    elements = max(figures["machine"]["elements"] for figures in atlas.figures.values())
+    elements = max((figures["machine"]["elements"] for figures in atlas.figures.values()),
+                   default=0)
     curves: dict[str, dict[str, list[tuple[AtlasPoint, Figures]]]] = {}
     for point, figures in atlas.figures.items():
         if point.scene.size == size and figures["machine"]["elements"] == elements:
@@ -149,18 +197,20 @@ def error_figure(atlas: Atlas) -> Figure | None:
         return None
     figure = Figure(figsize=(2.6 * max(2, len(curves)), 5.4), layout="constrained")
     panels = figure.subplots(2, len(curves), squeeze=False, sharex=True, sharey="row")
-    colors = kind_colors(atlas)
+    colors, names = kind_colors(atlas), short_names(list(curves), NAME)
     for column, (scene, cages) in enumerate(curves.items()):
         for row in range(2):
             for kind, points in cages.items():
                 _curve(panels[row][column], points, colors[kind], row, kind)
-        panels[0][column].set_title(f"{scene[:NAME]}", fontsize=9)
+        panels[0][column].set_title(names[scene], fontsize=9)
         panels[1][column].set_xlabel("greatest depth error, LSB", fontsize=8)
     panels[0][0].set_ylabel("fragments a clock", fontsize=9)
     panels[1][0].set_ylabel("… for each 100,000 cells", fontsize=9)
-    figure.suptitle("{} elements, {}x{}".format(elements, *size), fontsize=10)
-    figure.legend(*panels[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=5,
-                  frameon=False, fontsize=8)
+    figure.suptitle("{} at {}x{}: the most elements, the largest size".format(
+        counted(elements, "element"), *size), fontsize=10)
+    # A scene without objects lacks kinds that others have.
+    lines = {line.get_label(): line for panel in panels[0] for line in panel.get_lines()}
+    _legend(figure, [*lines.values()], 8)
     return figure
 
 

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.text import Text
 
 #: Told how many cycles are simulated, and how many responses there were.
 ProgressFunction = Callable[[int, int], None]
@@ -74,17 +75,34 @@ def step_bar(steps: int) -> Iterator[Callable[[str], None]]:
         yield begin
 
 
+#: Columns of a terminal that the bar of points takes beside the words on a point and the number of
+#: points twice; with at least so many it has room for the time that has passed.
+BAR_COLUMNS, ROOMY_COLUMNS = 49, 110
+
+
 @contextmanager
 def points_bar(points: int) -> Iterator[Callable[[int, str], None]]:
     """A function to tell how many more of ``points`` are there, and of which the last one was; it
-    shows how long the rest takes, and nothing where the error output is no terminal."""
+    shows how long the rest takes, and nothing where the error output is no terminal.
+
+    The words on the last point are cut to what the terminal has room for, so that the time left is
+    whole at 80 columns; the time that has passed is shown on wide terminals only."""
     console = Console(stderr=True)
     if not console.is_terminal:
         yield lambda more, last: None
         return
-    with Progress(BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} points"),
-                  TimeElapsedColumn(), TextColumn("elapsed, about"), TimeRemainingColumn(),
-                  TextColumn("left  {task.description}"), console=console,
+    roomy = console.width >= ROOMY_COLUMNS
+    passed = [TimeElapsedColumn(), TextColumn("elapsed,")] if roomy else []
+    with Progress(BarColumn(16), TextColumn("{task.completed:.0f} of {task.total:.0f} points"),
+                  *passed, TextColumn("about"), TimeRemainingColumn(), TextColumn("left"),
+                  TextColumn("{task.description}", markup=False), console=console,
                   transient=True) as bar:
         task = bar.add_task("", total=points)
-        yield lambda more, last: bar.update(task, advance=more, description=last)
+
+        def found(more: int, last: str) -> None:
+            room = console.width - BAR_COLUMNS - 2 * len(str(points)) - 17 * roomy
+            words = Text(last)
+            words.truncate(max(room, 0), overflow="ellipsis")
+            bar.update(task, advance=more, description=words.plain)
+
+        yield found

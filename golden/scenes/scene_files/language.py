@@ -57,7 +57,8 @@ VIEW_WORDS = {word.name: word for word in (
          "Direction towards the one light, which is far away: right, up, towards the eye.",
          "light -1,1,1"),
     Word("nodes", "nodes", whole(1, MAXIMUM_NODES),
-         "How many nodes share the scene, for commands that compare and are told nothing else.",
+         "How many nodes share the scene, for compare, where it is told no cages; the atlas has "
+         "--nodes.",
          "nodes 16"),
     Word("overlay", "overlay", COLOR,
          "Decided: a frame in this colour, one pixel wide, just inside the edge of the picture.",

@@ -3,15 +3,18 @@
 import csv
 import io
 import json
+from dataclasses import replace
 
 import pytest
 from atlas_sweeps import SMALL
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from cardcage.testbenches.atlas.atlas import Atlas, AtlasOptions
+from cardcage.testbenches.atlas.atlas import Atlas, AtlasOptions, _several
 from cardcage.testbenches.atlas.atlas_facts import atlas_csv, atlas_facts
 from cardcage.testbenches.atlas.atlas_map import atlas_map, kind_of, winners
 from cardcage.testbenches.atlas.atlas_report import ATLAS_FILES, write_atlas
 from cardcage.testbenches.atlas.atlas_table import headline, tables
+from cardcage.testbenches.atlas.charts import error_figure, map_figure
 from cardcage.testbenches.atlas.points.atlas_point import Failure
 from cardcage.testbenches.atlas.points.measure import batches, measure
 from cardcage.testbenches.comparison.cage import Cage
@@ -92,6 +95,50 @@ def test_every_bound_holds_the_clocks(atlas):
         assert max(bound for name, bound in figures["bounds"].items() if name != "merge") <= \
             figures["draw"] + 2
         assert figures["limit"] in (*figures["bounds"], "waiting", "memory ports")
+
+
+def test_a_reason_is_told_once(atlas):
+    """With its scenes and cages; of many the first ones."""
+    points = SMALL.points()
+    reasons = dict.fromkeys(points, Failure("too large", failed=False))
+    reasons[points[0]] = Failure("no elements", failed=False)
+    reasons[points[-1]] = Failure("it burns", failed=True)
+    assert replace(atlas, failures=reasons).refused == [
+        "tetra:depth=1 on PM, 1 point: no elements",
+        "tetra:depth=1 on 2x(PMC), 2x(PMT), 2x(PMS)F, 2xPD2xM, 4 points: too large"]
+    assert _several(map(str, range(15))) == "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 3 more"
+    assert _several("aba") == "a, b"
+
+
+def test_every_word_of_a_chart_is_on_it(atlas):
+    """The legend of curves names kinds that the first scene lacks, and the title which machines;
+    on the map the words of a cell are within it, though its kinds have long names."""
+    points = [replace(point, scene=replace(point.scene, name=name), fraction_bits=bits, cage=cage)
+              for point in list(atlas.figures)[:1] for name in ("first", "second")
+              for bits in (0, "exact") for cage in (
+                  Cage("PM"), Cage("PM", regions=(16, 16), objects="elements"),
+                  Cage("PM", objects="controller"))]
+    [some] = list(atlas.figures.values())[:1]
+    options = replace(SMALL, fraction_bits=(0, "exact"),
+                      cages=("PM", "PM/16x16@elements", "PM@controller"))
+    shown = replace(atlas, options=options, figures={
+        point: some | ({"work": 10**25} if point.cage.objects else {})
+        for point in points if point.scene.name == "second" or not point.cage.objects})
+    error, drawn = error_figure(shown), map_figure(shown)
+    for figure in (error, drawn):
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        [legend] = figure.legends
+        box = legend.get_window_extent()
+        assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
+    assert [text.get_text() for text in error.legends[0].get_texts()] == [
+        "host broadcast", "regions 16x16, objects in elements",
+        "host broadcast, objects in controller"]
+    assert error.get_suptitle() == "1 element at 16x16: the most elements, the largest size"
+    for axes in drawn.axes:
+        cell = axes.patches[0].get_window_extent()
+        for text in axes.texts:
+            assert text.get_window_extent().width <= cell.width
 
 
 def test_what_contradicts_itself_is_refused():

@@ -84,7 +84,7 @@ def test_a_machine_that_there_cannot_be_is_refused(cache):
     assert [point.cage.label for point in atlas.figures] == ["PM"]
     assert not atlas.differences  # it is no fault of a machine's
     [line] = atlas.warnings
-    assert line.startswith("PMM PM, 1 point: ")
+    assert line.startswith("tetra:depth=1 on PMM PM, 1 point: ")
     with pytest.raises(InputError, match="no such machine"):
         make_atlas(replace(asked, cages=("PMM PM",), processes=1))
 

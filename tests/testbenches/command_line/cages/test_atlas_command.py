@@ -33,7 +33,8 @@ def test_a_map_and_the_same_once_more(place):
     verdict, *_, last = result.stdout.splitlines()
     assert verdict == "6 points, 6 by the models"
     assert last == "report: cardcage-out/atlas.html"
-    assert result.stderr.startswith("cardcage: warning: PMMM, 2 points: cards: 3 memory units")
+    assert result.stderr.startswith("cardcage: warning: tetra:depth=1 on PMMM, 2 points: cards: "
+                                    "3 memory units")
     assert result.stderr.count("\n") == 1
     assert {path.name for path in (place / "cardcage-out").iterdir()} == set(ATLAS_FILES)
     facts = json.loads((place / "cardcage-out" / "atlas.json").read_text("utf-8"))
