@@ -19,6 +19,7 @@ from ..regions import (
     regions_of,
 )
 from ..widths import Widths
+from .making import Objects
 
 
 class DealingFields(Widths):
@@ -29,6 +30,7 @@ class DealingFields(Widths):
     balance: Balance
     balancer: Balancer
     maximum_units: int
+    objects: Objects | None
 
     @property
     @abstractmethod
