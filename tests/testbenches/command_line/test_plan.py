@@ -9,14 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from command_bench.plan import facts, machine_of, run
 from refusals import BAD_SCENES_AND_MACHINES, refusal
 
 from cardcage.golden.scene_display_list import make_display_list
-from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.golden.specification.errors import InputError
-from cardcage.testbenches.cocotb_bench.exchange import configuration_of
-from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.command_line.tables.plan_table import plan_table, plan_text
 from cardcage.testbenches.command_line.tables.scene_plan import plan_facts, plan_scene
 from cardcage.testbenches.render import RenderOptions, prepare_render
@@ -29,22 +26,6 @@ TINY = ["--cards", "PM", "--size", "16x16"]
 def place(tmp_path, monkeypatch) -> Path:
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def run(*arguments, command="plan"):
-    return CliRunner().invoke(main, [command, *map(str, arguments)])
-
-
-def facts(*arguments) -> dict:
-    result = run(*arguments, "--json")
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
-
-
-def machine_of(planned: dict) -> MachineConfiguration:
-    names = MachineConfiguration.__dataclass_fields__
-    return configuration_of({name: value for name, value in planned["machine"].items()
-                             if name in names})
 
 
 def test_text():

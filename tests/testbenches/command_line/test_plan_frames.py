@@ -5,15 +5,13 @@ import shlex
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from command_bench.plan import facts, machine_of, run
 from refusals import refusal
 
 from cardcage.golden.planning.scene_needs import fitted
 from cardcage.golden.reference import bit_true, exact
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
-from cardcage.testbenches.cocotb_bench.exchange import configuration_of
-from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.command_line.tables.plan_table import plan_text
 from cardcage.testbenches.command_line.tables.scene_plan import plan_scene
 from cardcage.testbenches.machine_options import MachineOptions, machine_for_scene
@@ -33,23 +31,6 @@ def place(tmp_path, monkeypatch) -> Path:
     Path("views.csv").write_text(PATH)
     make_display_list("tetra:depth=0", width=16, height=16).display_list.save("list.npz")
     return tmp_path
-
-
-def run(*arguments, command="plan"):
-    return CliRunner().invoke(main, [command, *map(str, arguments)])
-
-
-def facts(*arguments) -> dict:
-    result = run(*arguments, "--json")
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
-
-
-def machine_of(planned):
-    machine = dict(planned["machine"])
-    for name in ("depth_plane_bits", "channel_plane_bits", "memory_units", "processing_elements"):
-        del machine[name]
-    return configuration_of(machine)
 
 
 @pytest.mark.parametrize(("words", "asked"), [
