@@ -1,5 +1,5 @@
-"""What all tests share: ``library/`` is importable, some tests are marked quick, and what tests
-measure is shown at the end."""
+"""What all tests share: ``library/`` is importable, some tests are marked quick, some cases stand
+for all, and what tests measure is shown at the end."""
 
 import gc
 import sys
@@ -45,12 +45,26 @@ def pytest_xdist_make_scheduler(config, log):
     return WorkStealingScheduling(config, log)
 
 
+def pytest_addoption(parser):
+    parser.addoption("--every", action="store_true",
+                     help="every case, in place of some that stand for all: three quarters of an "
+                          "hour on two cores")
+
+
+def pytest_report_header(config):
+    return None if config.getoption("every") else "some cases stand for all; --every runs each"
+
+
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marks
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     for item in items:
         place = item.path.relative_to(TESTS)
         if place.parts[0] in QUICK and place.as_posix() not in NOT_QUICK:
             item.add_marker(pytest.mark.quick)
+    if not config.getoption("every"):
+        others = [item for item in items if item.get_closest_marker("every")]
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if not item.get_closest_marker("every")]
     items.sort(key=_slow_first)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import PIXEL, SCREEN, check, joined, random_list, triangles
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.merging.cage import merge_cage
@@ -39,6 +40,9 @@ MODELS = {
     "bus of three, two ports": ("3x(PMS)FF", (13, 7), {"list_words": 40, "memory_ports": 2}),
     "bus of two of two elements": ("2x(PMMPMMS)FF", (13, 7), {"list_words": 40}),
 }
+#: As parameters.
+NAMES = chosen(MODELS, "chain of three, vertices", "tree of five, vertices, two ports",
+               "bus of four, vertices", "bus of two of two elements")
 
 
 def compiled():

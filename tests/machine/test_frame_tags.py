@@ -12,6 +12,7 @@ from frames import (
     spans_twice,
     triangles,
 )
+from suite.cases import EVERY, chosen
 
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.engines import pysim_engine
@@ -37,7 +38,8 @@ def waits(monkeypatch):
 
 
 @pytest.mark.parametrize("ports", [1, 2])
-@pytest.mark.parametrize(("tag_bits", "count", "cards"), [(2, 16, "PMM"), (3, 20, "PM")])
+@pytest.mark.parametrize(("tag_bits", "count", "cards"), [
+    (2, 16, "PMM"), pytest.param(3, 20, "PM", marks=EVERY)])
 def test_frames_past_the_last_tag(tag_bits, count, cards, ports):
     lists = many_frames(count, seed=ports)
     assert count > 2 << tag_bits
@@ -48,7 +50,7 @@ def test_frames_past_the_last_tag(tag_bits, count, cards, ports):
 
 
 @pytest.mark.parametrize("ports", [1, 2])
-@pytest.mark.parametrize("tag_bits", [2, 3])
+@pytest.mark.parametrize("tag_bits", chosen([2, 3], 2))
 def test_frames_that_leave_no_idle_clock_wait(waits, tag_bits, ports):
     """One frame after the other is started over, each pixel of it visible several times."""
     count = 2 + (3 << tag_bits)

@@ -7,6 +7,7 @@ colours are compared as they leave the video output, depths as they are read bac
 import numpy as np
 import pytest
 from frames import expected_video
+from suite.cases import chosen
 
 from cardcage.golden.hard_cases.catalogue import HARD_CASES
 from cardcage.golden.reference import bit_true, exact
@@ -23,6 +24,9 @@ CARDS = {(32, 32): "PMPMMM", (97, 61): "PMM", (1000, 333): "PMM", (640, 480): "P
 #: once where errors add up over a large picture.
 PRECISIONS = [((32, 32), "exact"), ((32, 32), 6), ((32, 32), 0), ((97, 61), "exact"),
               ((1000, 333), "exact"), ((1000, 333), 0), ((640, 480), "exact"), ((640, 480), 6)]
+#: Each size once, and each precision.
+SUITE = ((32, 32), "exact"), ((32, 32), 0), ((97, 61), "exact"), ((1000, 333), "exact"), (
+    (640, 480), 6)
 
 LISTS = {name: case.make() for name, case in HARD_CASES.items()}
 
@@ -45,8 +49,9 @@ def test_every_case_has_a_machine():
     assert {size for size, fraction_bits in PRECISIONS if fraction_bits == "exact"} == set(CARDS)
 
 
-@pytest.mark.parametrize(("size", "fraction_bits"), PRECISIONS, ids=str)
-def test_every_pixel_of_every_case(size, fraction_bits, record_property):
+@pytest.mark.parametrize("drawn", chosen(PRECISIONS, *SUITE), ids=str)
+def test_every_pixel_of_every_case(drawn, record_property):
+    size, fraction_bits = drawn
     cases = cases_of(size)
     bits = fraction_bits
     if fraction_bits == "exact":  # of the case that needs most

@@ -14,6 +14,7 @@ from math import ceil, floor
 import numpy as np
 import pytest
 from amaranth.hdl import Const
+from suite.cases import EVERY
 
 from cardcage.golden.hard_cases.catalogue import hard_case
 from cardcage.golden.hard_cases.rational import covered
@@ -100,6 +101,7 @@ def test_the_prediction_is_right_for_what_is_not_broken(name):
                           exact.draw(display_list).depth)
 
 
+@EVERY
 def test_slopes_truncated_instead_of_rounded(monkeypatch, record_property):
     """29 steps of 8/5 units too low come to more than the half spacing that the bias leaves."""
     name = "sliver-half-way-depths"
@@ -160,6 +162,7 @@ def unchecked(monkeypatch):
                         lambda configuration, display_list: display_list)
 
 
+@EVERY
 def test_a_depth_word_one_bit_too_narrow(monkeypatch, record_property):
     """Carried depths beyond twice the range come back as negative ones, so as the nearest."""
     name = "drift-past-both-ends"
@@ -173,6 +176,7 @@ def test_a_depth_word_one_bit_too_narrow(monkeypatch, record_property):
                   image(display_list, narrow), record_property, "depth word a bit too narrow")
 
 
+@EVERY
 def test_an_edge_column_one_bit_too_narrow(monkeypatch, record_property):
     """The right edge in column 64 comes back in column -64: its half of the screen is gone."""
     name = "coordinate-ends"

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import check, check_bit_true, joined, random_list, triangles
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.golden.reference.triangle_setup import prepare
@@ -43,7 +44,7 @@ def both_ways(display_list, engine, **fields):
 
 @pytest.mark.parametrize(("cards", "fields"), [
     ("PM", {"shading": "flat", "fraction_bits": 5}),
-    ("PMM PMM", {"setup_interval": 12}),
+    pytest.param("PMM PMM", {"setup_interval": 12}, marks=EVERY),
     ("PM", {"words": 16, "maximum_units": 4, "shading": "flat", "fraction_bits": 20,
             "setup_interval": MAXIMUM_SETUP_INTERVAL}),  # pulled: 4 x 4 of 8 x 8 pixels
 ])

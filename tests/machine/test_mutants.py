@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import check_frames, check_scans, draw, many_frames, random_list, spans_twice, triangles
+from suite.cases import EVERY
 
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 
@@ -298,13 +299,15 @@ def impatient(monkeypatch):
     monkeypatch.setattr("frames.PysimEngine", Impatient)
 
 
+@EVERY
 @pytest.mark.parametrize("check", CHECKS)
 def test_the_machine_itself_passes(check):
     check()
 
 
 @pytest.mark.parametrize(("check", "name"), [
-    pytest.param(check, name, id=name) for check, group in CHECKS.items() for name in group])
+    pytest.param(check, name, id=name, marks=[EVERY] * bool(number))
+    for check, group in CHECKS.items() for number, name in enumerate(group)])
 def test_mutant_is_caught(monkeypatch, check, name):
     mutate(monkeypatch, *CHECKS[check][name])
     with pytest.raises(FAILURES):

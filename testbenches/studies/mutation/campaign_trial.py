@@ -72,6 +72,8 @@ class Copy:
         for source in (*(self.root / "package").iterdir(), *(self.root / name for name in HOUSES)):
             (package / source.name).symlink_to(source)
         self._cache = folder / "models"
+        # Cases that others stand for, too, where the project's tests know of such.
+        self._every = ["--every"] * (root / "tests/library/suite").is_dir()
 
     def run_mutant(self, mutant: Mutant, tests: Iterable[str], limit: float) -> Outcome:
         """The tests with the mutant in its place; afterwards the copy is as before."""
@@ -87,8 +89,8 @@ class Copy:
         """The tests until the first that fails; whoever takes more than ``limit`` seconds fails."""
         tests = tuple(tests)
         with subprocess.Popen(
-                [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=no",
-                 *(f"--ignore={test}" for test in _NEVER), *tests],
+                [sys.executable, "-m", "pytest", *self._every, "-x", "-q", "-p",
+                 "no:cacheprovider", "--tb=no", *(f"--ignore={test}" for test in _NEVER), *tests],
                 cwd=self.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                 env=os.environ | {"PYTHONPATH": str(self._path),
                                   "CARDCAGE_CACHE": str(self._cache)},

@@ -23,7 +23,7 @@ from cardcage.testbenches.frames.setup_timing import setup_timing
 LIST = make_display_list("random:n=25,size=12,seed=5", width=24, height=16).display_list
 
 
-SETUP = {"setup": "hardware", "setup_interval": 256}
+SETUP = {"setup": "hardware", "setup_interval": 40}
 
 
 @pytest.mark.parametrize(("cards", "options"), [

@@ -8,6 +8,7 @@ import pytest
 from amaranth.hdl import Fragment
 from amaranth.sim import Simulator
 from hdl_bench.bench import rejects
+from suite.cases import EVERY
 
 from cardcage.golden.balancing.balancer_clocks import balancer_clocks
 from cardcage.golden.organisations.region_table import packed_table, slots_of, static_table
@@ -153,7 +154,7 @@ def test_random_counts_at_random_times(columns, rows, elements, slots):
 @pytest.mark.parametrize(("columns", "rows", "elements", "slots", "there"), [
     (1, 1, 1, 1, 1), (1, 1, 9, 1, 9), (3, 1, 2, 2, 2), (5, 3, 4, 5, 3), (16, 8, 16, 10, 16),
     (16, 8, 16, 10, 13), (8, 8, 64, 2, 64), (3, 43, 2, 129, 2), (32, 32, 1, 1024, 1),
-    (32, 32, 16, 80, 16)])
+    pytest.param(32, 32, 16, 80, 16, marks=EVERY)])
 def test_clocks(columns, rows, elements, slots, there):
     """As stated where no count is waited for, whatever is counted."""
     cage = Cage(columns=columns, rows=rows, elements=elements, slots=slots)

@@ -13,6 +13,7 @@ from hdl_bench.element_card import (
 from hdl_bench.pictures import exact_words, prepare, prepared_values, random_triangles
 from hdl_bench.regions import DealFrames, random_table, region_machine
 from hdl_bench.streams import pauses
+from suite.cases import EVERY
 
 from cardcage.golden.balancing.region_counts import region_counts
 from cardcage.golden.balancing.region_grid import RegionGrid
@@ -22,9 +23,10 @@ from cardcage.golden.specification.commands import ResponseKind
 
 
 @pytest.mark.parametrize(("machine", "seed", "balance", "ports"), [
-    ("squares", 0, "clocks", 1), ("squares", 2, "triangles", 2), ("wide", 1, "triangles", 1),
-    ("columns", 2, "static", 2), ("rows", 3, "clocks", 2), ("few", 1, "clocks", 1),
-    ("one each", 2, "clocks", 2)])
+    ("squares", 0, "clocks", 1), ("columns", 2, "static", 2), ("few", 1, "clocks", 1),
+    ("one each", 2, "clocks", 2), pytest.param("squares", 2, "triangles", 2, marks=EVERY),
+    pytest.param("wide", 1, "triangles", 1, marks=EVERY),
+    pytest.param("rows", 3, "clocks", 2, marks=EVERY)])
 def test_boot_frames_and_their_reports(machine, seed, balance, ports):
     plain = region_machine(machine)
     lists = [random_triangles(f"{machine} {seed} {frame}", 12, width=plain.width,

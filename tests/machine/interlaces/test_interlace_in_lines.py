@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from frames import draw, random_list, spans_twice
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.golden.reference import exact
@@ -18,8 +19,8 @@ from cardcage.testbenches.frames.simulation import simulate
     ("PM", (7, 5), {"memory_ports": 2}),
     ("2x(PM)", (13, 9), {"setup": "hardware", "setup_interval": 16}),
     ("4x(PMM)", (9, 7), {"memory_ports": 2}),
-    ("8x(PM)", (6, 13), {}),
-    ("2x(PMPMC)", (7, 6), {"packet": 1}),
+    pytest.param("8x(PM)", (6, 13), {}, marks=EVERY),
+    pytest.param("2x(PMPMC)", (7, 6), {"packet": 1}, marks=EVERY),
     ("2x(PMMT)", (6, 5), {"packet": 1}),
 ])
 def test_every_number_of_elements_draws_the_picture(cards, size, options):

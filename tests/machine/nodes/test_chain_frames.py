@@ -18,7 +18,7 @@ def test_a_frame_takes_whole_scans(bound, retained, record_property):
     cards = "4x(PMMC)"
     machine = wide_machine(random_list(0, 4, width=16, height=16), cards=cards, packet=1,
                            clocks_per_pixel=4, memory_ports=2, fraction_bits=40,
-                           list_words=64 if retained else 0)
+                           list_words=64)
     found = pace(machine, screens(machine, count, 2, "rising"), retained=retained)
     record_property("measured", f"{cards}{', lists' * retained}: {found}")
     assert found.bound == bound and found.merge == 0

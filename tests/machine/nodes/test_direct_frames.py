@@ -18,6 +18,7 @@ from node_frames import (
     redrawn,
     ways,
 )
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.merging.ties import order_matters
@@ -42,6 +43,7 @@ MODELS = {
     "five for eight, two ports": ("5x(P)D8x(M)", (13, 7), {
         **VERTICES, "setup_interval": 1, "memory_ports": 2, "queue": 3, "list_words": 40}),
 }
+NAMES = chosen(MODELS, "two for one, two ports", "three for two", "five for eight")
 
 
 def model(name):
@@ -52,7 +54,7 @@ def model(name):
                         **options), listed
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("stall_seed", [None, 4])
 def test_every_packet_in_every_way(name, stall_seed):
     """Elements tie in many pixels, in memory as well when shares are contiguous."""
@@ -65,7 +67,7 @@ def test_every_packet_in_every_way(name, stall_seed):
                for simulation in drawn)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_order_matters_in_the_list(name):
     """So that the test above can fail: whoever has the least number is not always first."""
     machine, listed = model(name)
@@ -73,7 +75,7 @@ def test_order_matters_in_the_list(name):
     assert order_matters(listed, shares) == (machine.nodes > 1)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_one_picture_after_another(name):
     """Of few triangles and of many; with lists that stay, until they are cleared."""
     machine, _ = model(name)
@@ -103,7 +105,7 @@ def same_pixels(elements, rounds, *, width, height):
     return triangles(place, [[each] * 3 for each in depth], color, width=width, height=height)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_no_update_is_lost(name):
     """Where all elements hit one pixel in consecutive clocks; the units say that it happened."""
     machine, _ = model(name)
@@ -124,7 +126,8 @@ CAGES = {
 }
 
 
-@pytest.mark.parametrize("cage", CAGES)
+@pytest.mark.parametrize("cage", chosen(
+    CAGES, "coarser", "more lines than cards", "the least order"))
 def test_other_cages(cage):
     cards, options = CAGES[cage]
     listed = joined(random_list(len(cage), 6), all_tied(4, 2, width=8, height=8))

@@ -2,6 +2,7 @@
 
 import pytest
 from node_frames import compiled
+from suite.cases import EVERY
 
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.testbenches.frames.compare import compare
@@ -11,7 +12,8 @@ from cardcage.testbenches.speed.cases import case_lists
 ELEMENTS = 4
 
 
-@pytest.mark.parametrize(("queue", "least"), [(4, 0.9), ("element", 0.7)])
+@pytest.mark.parametrize(("queue", "least"), [
+    (4, 0.9), pytest.param("element", 0.7, marks=EVERY)])
 def test_elements_that_draw_the_same_at_the_same_time(queue, least, record_property):
     """Small triangles, the worst for a crossbar, so that elements want one unit again and again;
     of sixteen elements ``python -m testbenches.studies.direct_speed`` prints the figures."""

@@ -3,6 +3,7 @@
 import numpy as np
 from frames import expected_video, golden_picture, random_list
 from node_frames import READ_DEPTH, all_tied, compiled, frames, immediate, run
+from suite.cases import EVERY
 
 from cardcage.golden.merging.cage import merge_cage
 from cardcage.golden.organisations.organisation_of import organisation_of
@@ -16,6 +17,7 @@ TIES = all_tied(140, 1, width=16, height=4)
 FEW = random_list(5, 5, width=16, height=4, flat=True)
 
 
+@EVERY
 def test_sixty_four_nodes():
     """More triangles than nodes, so that the order decides in ties; and fewer, so that most of
     them draw nothing."""
@@ -24,6 +26,7 @@ def test_sixty_four_nodes():
     frames(MACHINE, each, compiled(), memory_seed=1)
 
 
+@EVERY
 def test_a_frame_begins_when_all_nodes_show_the_last_one():
     """Frame after frame without a pause, in each of which the last node is sent its triangle
     first; that it may be, since of two nodes the order does not matter."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.merge_clocks import predict_merge
@@ -51,7 +52,8 @@ def merges(configuration, lists):
         yield begin % configuration.cycles_per_scan, after - before
 
 
-@pytest.mark.parametrize("cage", CAGES)
+@pytest.mark.parametrize("cage", chosen(
+    CAGES, "one unit", "units that alternate along rows"))
 def test_a_merge_takes_the_predicted_clocks(cage, record_property):
     cards, options = CAGES[cage]
     lists = [scene(seed) for seed in SEEDS]

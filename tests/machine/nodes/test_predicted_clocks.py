@@ -16,6 +16,7 @@ from node_frames import (
     redrawn,
     run,
 )
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
@@ -65,7 +66,7 @@ def accuracy(predicted, clocks):
     return abs(predicted / clocks - 1)
 
 
-@pytest.mark.parametrize("cage", BUSES)
+@pytest.mark.parametrize("cage", chosen(BUSES, "units with one port"))
 def test_a_merge_on_a_bus(cage, record_property):
     cards, options = BUSES[cage]
     lists = list(scenes())
@@ -83,7 +84,7 @@ def test_a_merge_on_a_bus(cage, record_property):
     assert max(errors) <= ACCURACY
 
 
-@pytest.mark.parametrize("cage", CROSSBARS)
+@pytest.mark.parametrize("cage", chosen(CROSSBARS, "one queue for each element"))
 def test_drawing_through_a_crossbar(cage, record_property):
     cards, options = CROSSBARS[cage]
     lists = list(scenes())
@@ -109,7 +110,7 @@ def frame_words(machine, listed, retained):
             else immediate(machine, listed))
 
 
-@pytest.mark.parametrize("cage", SCANNED)
+@pytest.mark.parametrize("cage", chosen(SCANNED, "a coarser picture"))
 def test_drawing_into_units_that_the_scan_reads(cage, record_property):
     """Wherever the scan is as a frame begins: right after the last one was shown, in blanking, or
     some lines further."""

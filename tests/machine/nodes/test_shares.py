@@ -6,7 +6,7 @@ import pytest
 from frames import joined, random_list
 from node_frames import (
     CLEAR_LISTS,
-    MODELS,
+    NAMES,
     all_tied,
     check_merged,
     compiled,
@@ -28,7 +28,7 @@ from cardcage.testbenches.frames.simulation import simulate
 PACKETS = (1, 3, 10, "contiguous")
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("stall_seed", [None, 4])
 def test_every_packet_in_every_way(name, stall_seed):
     """Nodes tie in many pixels, and who draws there first is another one with each packet."""
@@ -39,7 +39,7 @@ def test_every_packet_in_every_way(name, stall_seed):
     frames(machine, each, compiled(), memory_seed=5, stall_seed=stall_seed)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_order_matters_in_the_list(name):
     """So that the test above can fail."""
     machine, listed = model(name)
@@ -48,7 +48,7 @@ def test_order_matters_in_the_list(name):
     assert found == [True, True, machine.nodes < 3, False], found
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_one_picture_after_another(name):
     """Empty ones, ones of fewer triangles than nodes, of few pixels, of all; with lists that stay
     from frame to frame, over frames that are sent as ever, until they are cleared."""

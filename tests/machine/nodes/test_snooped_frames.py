@@ -20,6 +20,7 @@ from node_frames import (
     redrawn,
     run,
 )
+from suite.cases import EVERY, chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.merging.cage import merge_cage
@@ -80,7 +81,8 @@ def bar(machine, pixels):
     return 1.05 * pixels + machine.nodes * (machine.words / 4096 + 64)
 
 
-@pytest.mark.parametrize("cards", ["3x(PMS)FF", "2x(PMMPMMS)FF", "8x(PMS)F"])
+@pytest.mark.parametrize("cards", chosen(
+    ["3x(PMS)FF", "2x(PMMPMMS)FF", "8x(PMS)F"], "3x(PMS)FF"))
 def test_a_pixel_a_clock_and_little_else(cards, record_property):
     """Whatever is hidden: nearly all, so that only node 0 sends, or nothing, so that all do."""
     lists, machine = [], wide_machine(random_list(0, 4, width=16, height=16), cards=cards,
@@ -128,7 +130,7 @@ OTHERS = {
 }
 
 
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("name", chosen(OTHERS, "skewed"))
 def test_other_cages(name):
     cards, options = OTHERS[name]
     listed = random_list(5, 14, width=13, height=7)
@@ -148,7 +150,8 @@ PACES = {
 
 
 @pytest.mark.parametrize(("bound", "retained"), [
-    ("drawing", False), ("drawing", True), ("merging", False), ("a scan", True)])
+    ("drawing", True), ("drawing", False), ("merging", False),
+    pytest.param("a scan", True, marks=EVERY)])
 def test_a_frame_takes_what_takes_longest(bound, retained, record_property):
     """Drawing, merging, or whole scans, of which each picture waits for one: from the second
     merged picture on to the last one, within a twentieth."""
@@ -156,7 +159,7 @@ def test_a_frame_takes_what_takes_longest(bound, retained, record_property):
     size = {"width": 16, "height": 16}
     machine = wide_machine(random_list(0, 4, **size), cards=cards, clocks_per_pixel=clocks,
                            memory_ports=2, fraction_bits=40, packet=1,
-                           list_words=64 if retained else 0)
+                           list_words=64)
     found = pace(machine, screens(machine, count, 2, depths), retained=retained)
     record_property("measured", f"{cards}{', lists' * retained}: {found}")
     assert found.frame <= 1.05 * max(found.draw, found.merge) or found.frame == found.scans

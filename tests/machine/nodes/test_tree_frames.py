@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import PIXEL, SCREEN, check, joined, random_list, triangles
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.frame_clocks import most_frame_clocks
@@ -60,10 +61,13 @@ CAGES = {
 }
 
 
-@pytest.mark.parametrize(("seed", "cage"), list(enumerate(CAGES)))
-def test_whole_frames(seed, cage):
+@pytest.mark.parametrize("cage", chosen(
+    CAGES, "two of one unit, in turn", "three of two elements, two ports",
+    "coarser, words for a quarter"))
+def test_whole_frames(cage):
     """From random memory, with a host that stalls; ties between nodes in half of it."""
     cards, options = CAGES[cage]
+    seed = list(CAGES).index(cage)
     listed = joined(random_list(seed, 24), same_depths(6, seed))
     configuration = machine(listed, cards, **options)
     [(simulation, traffic)] = frames(configuration, [listed], seed=seed)
@@ -95,7 +99,7 @@ def frames(configuration, lists, *, abandoned=(), seed=1, stall=True):
         yield simulation, traffic
 
 
-@pytest.mark.parametrize("ports", [1, 2])
+@pytest.mark.parametrize("ports", chosen([1, 2], 2))
 def test_many_frames(ports):
     """Past the last tag; nothing of a frame that was sent, or that nobody ended, is sent again."""
     kinds = (lambda n: random_list((7, n), 9), lambda n: triangles([], [], [], background=(n,) * 3),

@@ -8,6 +8,7 @@ import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, compiled, run
 from object_bench.objects import object_machine, random_objects
 from object_bench.refused_objects import check_refused, refused_objects
+from suite.cases import chosen
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_controller
@@ -64,7 +65,7 @@ def compare(configuration, listed, simulation):
 
 
 @pytest.mark.parametrize("stall_seed", [None, 4])
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", chosen(MODELS, "lines", "three strips"))
 def test_frames_of_objects(name, stall_seed):
     """Meshes are loaded before the first and before the third; objects that reach out of the guard
     band come as triangles in between; then the host prepares all, and the first again."""
@@ -90,7 +91,8 @@ def test_frames_of_objects(name, stall_seed):
     assert min(made_at_controller(configuration, first).made, counted[1]) > 10
 
 
-@pytest.mark.parametrize("name", ["squares", "lines", "three strips"])
+@pytest.mark.parametrize("name", chosen(
+    ["squares", "lines", "three strips"], "lines", "three strips"))
 def test_clocks_are_predicted(name):
     """From the first object's command until all is drawn, with clipped objects among the others."""
     configuration = machine(name)

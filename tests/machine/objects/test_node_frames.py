@@ -8,6 +8,7 @@ import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, check_merged, compiled, run
 from object_bench.objects import object_machine, random_objects
 from object_bench.refused_objects import check_refused, refused_objects
+from suite.cases import chosen
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.making import link_words, made_at_nodes
@@ -25,6 +26,7 @@ MODELS = {
     "bus of two": ("2x(PMS)F", {"packet": "contiguous", "shading": "flat", "order_bits": 0,
                                 "setup_interval": 64}),
 }
+NAMES = chosen(MODELS, "chain of three", "bus of two")
 MESHES = (0, 1, 2, 3, 7)
 
 #: Clocks from the frame's start until its first object is broadcast, and from its last command
@@ -59,7 +61,7 @@ def redrawn(configuration, listed):
 
 
 @pytest.mark.parametrize("stall_seed", [None, 4])
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_frames_of_objects(name, stall_seed):
     """Meshes are loaded before the first and before the third; objects that reach out of the guard
     band come as triangles in between; then the host prepares all, and the first again."""
@@ -87,7 +89,7 @@ def test_frames_of_objects(name, stall_seed):
     assert sum(each.sent for each in made_at_nodes(configuration, second)) == second.triangles > 0
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_objects_that_are_refused(name):
     """Of a mesh that was not loaded, and of any while some mesh found no room, even those that were
     loaded; whole frames before and after."""
@@ -100,7 +102,7 @@ def test_objects_that_are_refused(name):
     check_refused(answered, cases, listed.background)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", NAMES)
 def test_drawing_takes_the_predicted_clocks(name, record_property):
     """Within 2 % and the clocks of a command or two, of which these short frames are all."""
     configuration = machine(name)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from node_frames import READ_COUNTERS, READ_DEPTH, compiled, run
-from region_bench.forwarded_scenes import machine, scenes
+from region_bench.forwarded_scenes import MODELS, machine, scenes
+from suite.cases import chosen
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.objects.forwarding import forwarded_objects, made_at_elements
@@ -16,8 +17,8 @@ from cardcage.testbenches.frames.frame_job import frame_commands
 from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.frames.setup_timing import setup_timing
 
-#: Of ``MODELS``: all of them take minutes to compile.
-SUITE = ("three strips, one port", "four of a grid")
+#: All of them take minutes to compile.
+SUITE = chosen(MODELS, "three strips, one port", "four of a grid")
 
 #: Of the clocks to draw.
 ACCURACY = 0.01

@@ -8,6 +8,7 @@ from frames import golden_picture
 from hdl_bench.region_tables import table_words
 from node_frames import compiled
 from region_bench.models import BALANCERS, MODELS, machine, random_table, some_list
+from suite.cases import chosen
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.organisations.region_table import packed_table, slots_of
@@ -81,7 +82,8 @@ def of_every_kind(configuration, pick, frames):
 
 
 @pytest.mark.parametrize("stall_seed", [None, 1])
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", chosen(
+    MODELS, "three, two ports", "four, full", "five, full, vertices", "strips, one port"))
 def test_frames_by_tables_of_the_host(name, stall_seed):
     """From random memory; each table is used from its frame on, a refused one never."""
     configuration = machine(MODELS, name)
@@ -112,7 +114,7 @@ def test_a_late_picture(name):
 
 
 @pytest.mark.parametrize("stall_seed", [None, 1])
-@pytest.mark.parametrize("name", BALANCERS)
+@pytest.mark.parametrize("name", chosen(BALANCERS, "three, two ports"))
 def test_frames_by_tables_of_the_machine(name, stall_seed):
     """Each is packed of what the last frame counted; host and machine read the same counts."""
     configuration = machine(BALANCERS, name, balancer="hardware")

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from suite.cases import chosen
 
 from cardcage.golden.balancing.learnt_counts import learnt_counts
 from cardcage.golden.organisations.region_table import packed_table
@@ -51,9 +52,11 @@ MACHINES = {
 }
 
 
-@pytest.mark.parametrize("fields", MACHINES.values(), ids=MACHINES)
-def test_every_picture_and_every_count(fields):
-    configuration = plan(LISTS, clocks_per_pixel=2, **fields).configuration
+@pytest.mark.parametrize("name", chosen(
+    MACHINES, "3 elements, all slots full, learnt", "5 elements, triangles",
+    "7 elements, hardware"))
+def test_every_picture_and_every_count(name):
+    configuration = plan(LISTS, clocks_per_pixel=2, **MACHINES[name]).configuration
     for options in ({"depths": "last"},
                     {"depths": "all", "stall_seed": 5, "memory_seed": 6}):
         frames = list(simulate_sequence(configuration, LISTS, "verilator", triangles=4200,

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from PIL import Image
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage import testbenches
@@ -111,8 +112,9 @@ def test_the_mesh_lies_in_three_layers():
 
 
 @pytest.mark.parametrize(("cards", "options"), [
-    ("PM", {}), ("PMPM", {}), ("4x(PM)", {"block": 4, "memory_ports": 2}), ("PMM", {"skew": True}),
-    ("2x(PMM)", {}), ("2x(PMM)", {"lines": True})])
+    ("4x(PM)", {"block": 4, "memory_ports": 2}), ("PMM", {"skew": True}), ("2x(PMM)", {}),
+    pytest.param("PM", {}, marks=EVERY), pytest.param("PMPM", {}, marks=EVERY),
+    pytest.param("2x(PMM)", {"lines": True}, marks=EVERY)])
 def test_measured_and_predicted(cards, options):
     cases = [small_case(1, 20), small_case(2, 35)]
     configuration = replace(wide_machine(cases[1].frame, cards=cards, **options), observe=True,

@@ -10,6 +10,7 @@ import pytest
 from frames import random_list
 from hdl_bench.bench import simulate
 from hdl_bench.streams import Sink, Source
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.organisations.organisation_of import organisation_of
@@ -25,11 +26,9 @@ from cardcage.testbenches.frames.frame_job import frame_commands, frame_job
 from cardcage.testbenches.frames.responses import Answers
 from testbenches.studies.word_fuzz import LARGER, MACHINES, machine, run_trial
 
-#: What others of the machines have, too, and takes long: the study alone goes over them.
-STUDIED = ("4x(PM)", "not square", "planned squares")
 
-
-@pytest.mark.parametrize("name", [name for name in MACHINES if name not in LARGER + STUDIED])
+@pytest.mark.parametrize("name", chosen([name for name in MACHINES if name not in LARGER],
+                                        "PMPM", "skew", "set-up", "bus", "regions, hardware"))
 def test_a_good_frame_after_stray_words_is_exact(name):
     seed = 1
     print(f"machine {name}, seed {seed}")
