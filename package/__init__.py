@@ -29,10 +29,10 @@ if TYPE_CHECKING:  # what type checkers and editors see; the same names as in _H
     from .testbenches.export.export_files import export
     from .testbenches.frames.compare import compare
     from .testbenches.frames.region_host import RegionHost
-    from .testbenches.frames.responses import MachineError
     from .testbenches.frames.simulation import simulate_frame
     from .testbenches.render import render
     from .testbenches.render_frames import render_frames
+    from .testbenches.support.machine_error import MachineError
 
     __version__: str
 
@@ -62,7 +62,7 @@ _HOMES = {
     "InputError": "golden.specification.errors",
     "Machine": "hdl.machine",
     "MachineConfiguration": "golden.specification.configuration",
-    "MachineError": "testbenches.frames.responses",
+    "MachineError": "testbenches.support.machine_error",
     "RegionHost": "testbenches.frames.region_host",
     "compare": "testbenches.frames.compare",
     "compare_cages": "testbenches.comparison.compare_cages",

@@ -24,12 +24,13 @@ from .frames.node_counts import (
 from .frames.object_figures import object_figures
 from .frames.region_figures import region_figures, sent_table
 from .frames.rendering import Rendering
-from .frames.responses import MachineError, Simulation
+from .frames.responses import Simulation
 from .frames.setup_timing import setup_timing
 from .frames.simulation import simulate_frame
 from .frames.wrong_counts import wrong_counts
 from .machine_options import MachineOptions, machine_for_scene, resolution_warnings
 from .support.atomic_output import atomic_file, atomic_folder, output_errors
+from .support.machine_error import MachineError
 
 #: Pretty, and some 20 seconds in the slowest engine.
 DEFAULT_SCENE = "teapot:tessellation=3"

@@ -19,9 +19,10 @@ from ..engines.verilator_tool import ToolMissingError
 from ..frames.compare import Comparison, compare
 from ..frames.object_figures import object_figures
 from ..frames.region_figures import RegionTables
-from ..frames.responses import MachineError, Simulation
+from ..frames.responses import Simulation
 from ..frames.simulation import simulate
 from ..frames.wrong_counts import wrong_counts
+from ..support.machine_error import MachineError
 from .command_group import EXIT_DIFFERENT
 
 

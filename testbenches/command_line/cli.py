@@ -4,25 +4,30 @@ from __future__ import annotations
 
 import click
 
-from .boards_command import boards_command
-from .cache_command import cache_command
-from .cages.atlas_command import atlas_command
-from .cages.compare_command import compare_command
-from .check_verilog_command import check_verilog_command
 from .command_group import CommandGroup
-from .engines_command import engines_command
-from .export_command import export_command
-from .figures_command import figures_command
-from .plan_command import plan_command
-from .precision_command import precision_command
-from .render_command import render_command
-from .scenes_command import scenes_command
-from .speed_command import bench_command
+
+#: The module of each command.
+COMMANDS = {
+    "atlas": ".cages.atlas_command",
+    "bench": ".speed_command",
+    "boards": ".boards_command",
+    "cache": ".cache_command",
+    "check-verilog": ".check_verilog_command",
+    "compare": ".cages.compare_command",
+    "engines": ".engines_command",
+    "export": ".export_command",
+    "figures": ".figures_command",
+    "plan": ".plan_command",
+    "precision": ".precision_command",
+    "render": ".render_command",
+    "scenes": ".scenes_command",
+}
 
 HELP_SETTINGS = {"max_content_width": 100, "help_option_names": ["-h", "--help"]}
 
 
-@click.group(cls=CommandGroup, invoke_without_command=True, context_settings=HELP_SETTINGS)
+@click.group(cls=CommandGroup, modules=COMMANDS, invoke_without_command=True,
+             context_settings=HELP_SETTINGS)
 @click.version_option(package_name="cardcage", prog_name="cardcage")
 @click.pass_context
 def main(context: click.Context) -> None:
@@ -40,12 +45,6 @@ def main(context: click.Context) -> None:
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
-
-
-for command in (atlas_command, bench_command, boards_command, cache_command, check_verilog_command,
-                compare_command, engines_command, export_command, figures_command, plan_command,
-                precision_command, render_command, scenes_command):
-    main.add_command(command)
 
 
 if __name__ == "__main__":

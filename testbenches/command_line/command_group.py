@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shlex
 import sys
 import traceback
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NoReturn
 
 import click
 
 from ...golden.specification.errors import InputError
-from ..frames.responses import MachineError
 from ..support.any_characters import any_characters, readable
 from ..support.interruption import Interrupted, interruptible
+from ..support.machine_error import MachineError
 
 #: The picture differs, or the machine delivered none.
 EXIT_DIFFERENT = 1
@@ -75,7 +76,24 @@ class OneLineErrors(click.Command):
 
 
 class CommandGroup(OneLineErrors, click.Group):
-    """A group of such commands."""
+    """A group of such commands, each of which is loaded when it is asked for.
+
+    ``modules``  of each command that module, beside this one, that has it: ``check-verilog`` as
+                 ``check_verilog_command``
+    """
+
+    def __init__(self, *args: Any, modules: Mapping[str, str], **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._modules = modules
+        # Nothing but their names, of which click suggests one for a word that is none.
+        self.commands = {name: click.Command(name) for name in modules}
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self._modules:
+            return None
+        module = importlib.import_module(self._modules[cmd_name], __package__)
+        command: click.Command = getattr(module, f"{cmd_name.replace('-', '_')}_command")
+        return command
 
 
 def warn(message: str) -> None:

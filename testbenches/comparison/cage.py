@@ -27,9 +27,10 @@ from ..frames.compare import Comparison, compare
 from ..frames.node_counts import NodeFigures, count_differences, node_figures, unit_differences
 from ..frames.object_figures import ObjectFigures
 from ..frames.region_figures import RegionFigures
-from ..frames.responses import MachineError, Simulation
+from ..frames.responses import Simulation
 from ..frames.wrong_counts import wrong_counts
 from ..machine_options import MachineOptions, resolution_warnings
+from ..support.machine_error import MachineError
 from ..views.scene_frames import SceneFrames
 from .cage_memory import Memory, cells_of, memories_of
 from .frame_sequence import Clocks, FrameSequence, Latency

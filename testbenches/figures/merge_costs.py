@@ -23,8 +23,8 @@ from ...golden.specification.card_order import (
 from ...golden.specification.errors import InputError
 from ..comparison.cage import Cage, CageJob, Refused
 from ..comparison.comparison_facts import cage_facts
-from ..frames.responses import MachineError
 from ..machine_options import MachineOptions
+from ..support.machine_error import MachineError
 from ..support.measurement_cache import measured_once, package_hash
 from .figure_scenes import FigureScene, Size
 

@@ -13,16 +13,8 @@ from ...golden.specification.commands import ResponseKind, fault_text, response_
 from ...golden.specification.configuration import MachineConfiguration
 from ..engines.activity_record import ActivityRecord
 from ..engines.engine import EngineRun, Scan
+from ..support.machine_error import MachineError
 
-
-class MachineError(RuntimeError):
-    """The machine answered something it should not have, or nothing.
-
-    >>> import cardcage
-    >>> raise cardcage.MachineError("the machine hangs")
-    Traceback (most recent call last):
-    cardcage.testbenches.frames.responses.MachineError: the machine hangs
-    """
 
 @dataclass(frozen=True)
 class Work:

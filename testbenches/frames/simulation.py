@@ -16,8 +16,9 @@ from ...golden.specification.errors import InputError
 from ..engines.choose_engine import AUTO, make_engine
 from ..engines.engine import Engine, Progress
 from ..engines.verilator_tool import ToolMissingError
+from ..support.machine_error import MachineError
 from .frame_job import frame_job
-from .responses import Answers, MachineError, Simulation
+from .responses import Answers, Simulation
 
 
 def simulate(

@@ -33,8 +33,9 @@ from ..frames.frame_job import frame_commands
 from ..frames.object_figures import ObjectFigures, object_figures
 from ..frames.region_figures import RegionFigures, RegionTables
 from ..frames.region_host import region_readings
-from ..frames.responses import NOT_READ, Answers, MachineError, Simulation
+from ..frames.responses import NOT_READ, Answers, Simulation
 from ..frames.simulation import engine_errors
+from ..support.machine_error import MachineError
 
 #: Of which pictures something is read back.
 Reading = Literal["last", "all"]

@@ -33,8 +33,9 @@ from ..frames.conversation import responses_owed
 from ..frames.frame_job import frame_commands
 from ..frames.region_figures import RegionFigures, RegionTables
 from ..frames.region_host import region_readings, table_commands
-from ..frames.responses import Answers, MachineError
+from ..frames.responses import Answers
 from ..frames.simulation import engine_errors
+from ..support.machine_error import MachineError
 from .cases import CaseLists, Order
 
 _READ_COUNTERS = commands.command(Opcode.READ_COUNTERS)

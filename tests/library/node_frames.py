@@ -42,7 +42,7 @@ MODELS = {
 }
 #: As parameters.
 NAMES = chosen(MODELS, "chain of three, vertices", "tree of five, vertices, two ports",
-               "bus of four, vertices", "bus of two of two elements")
+               "bus of four, vertices")
 
 
 def compiled():

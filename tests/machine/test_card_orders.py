@@ -31,6 +31,7 @@ def test_every_legal_order_gives_the_same_picture():
     assert work["PMMPMM"] != work["PMPMMM"]
 
 
+@EVERY
 def test_coarse_precision_gives_every_order_the_same_errors():
     """On lattices of one, two and four units the strides are multiples of the one increment."""
     pictures = []
@@ -55,6 +56,7 @@ def test_shares_need_not_be_equal_nor_present(cards, skew):
     draw(random_list(8, 8, width=16, height=16), cards=cards, seed=3, skew=skew)
 
 
+@EVERY
 def test_a_skewed_interlace_gives_the_same_picture():
     """Of one unit each, of pairs, and of what is neither; and with set-up by either side."""
     options = {"PMPMMM": {"setup": "hardware"}, "PMMMM": {"memory_ports": 2}}

@@ -2,6 +2,7 @@
 
 import pytest
 from frames import check, expected_video, golden_picture, random_list
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.golden.specification.commands import ResponseKind
@@ -19,7 +20,7 @@ def cage(cards, **options):
 
 
 @pytest.mark.parametrize(("cards", "resolution"), [
-    ("PMMMMMMMM PMMMMMMMM", (16, 16)),
+    pytest.param("PMMMMMMMM PMMMMMMMM", (16, 16), marks=EVERY),
     ("PMMMM PMMMM", (16, 8)),  # half the units: y halves first
     ("PMM PMM", (8, 8)),
     ("PM PM", (8, 4)),

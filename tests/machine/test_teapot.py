@@ -11,8 +11,8 @@ from cardcage.testbenches.command_line.cli import main
 
 
 def render(folder, *arguments):
-    done = CliRunner().invoke(main, ["render", *arguments, "--engine", "pysim",
-                                     "--random-memory", "7", "--out", str(folder)])
+    done = CliRunner().invoke(main, ["render", *arguments, "--random-memory", "7",
+                                     "--out", str(folder)])
     assert done.exit_code == 0, done.output
     return json.loads((folder / "report.json").read_text())
 

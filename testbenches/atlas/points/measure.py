@@ -8,7 +8,7 @@ from itertools import groupby
 
 from ....golden.specification.configuration import MachineConfiguration
 from ....golden.specification.errors import InputError
-from ...frames.responses import MachineError
+from ...support.machine_error import MachineError
 from ...support.measurement_cache import package_hash
 from .atlas_point import AtlasPoint, Failure, Figures
 from .model_figures import Work, model_figures, of_any_precision, work_of

@@ -43,8 +43,9 @@ from ...comparison.cage import Cage
 from ...engines.choose_engine import make_engine
 from ...engines.engine import Job
 from ...frames.conversation import responses_owed
-from ...frames.responses import Answers, MachineError, Simulation
+from ...frames.responses import Answers, Simulation
 from ...frames.simulation import engine_errors
+from ...support.machine_error import MachineError
 from .atlas_point import AtlasPoint
 
 Int64 = NDArray[np.int64]

@@ -6,7 +6,7 @@ from typing import Any
 
 from ....golden.specification.errors import InputError
 from ...comparison.cage import CageJob, CageRun, Refused
-from ...frames.responses import MachineError
+from ...support.machine_error import MachineError
 from .atlas_point import AtlasPoint, Figures
 from .model_figures import clock_figures
 

@@ -28,7 +28,8 @@ from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification.commands import ResponseKind
 from cardcage.testbenches.frames.responses import Answers
 
-BUSES = ("bus of four, vertices", "bus of three, two ports", "bus of two of two elements")
+BUSES = chosen(("bus of four, vertices", "bus of three, two ports", "bus of two of two elements"),
+               "bus of four, vertices")
 
 
 def seen(machine, lists, answered):

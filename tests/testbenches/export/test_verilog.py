@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from suite.cases import chosen
 from verilog_tools import icarus, verilator_lint, yosys
 
 from cardcage.golden.planning.presets import PRESETS
@@ -10,6 +11,7 @@ from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.hdl.backplane.connectors import memory_bus_bits
 from cardcage.hdl.backplane.words import planes_layout, span_layout, walked_outline_layout
 from cardcage.hdl.components import COMPONENTS
+from cardcage.hdl.machine import BOARDS
 from cardcage.hdl.rasteriser.interpolator import fragment_layout
 from cardcage.testbenches.export.export_files import COMPONENT_NAMES, WAIVERS
 from cardcage.testbenches.export.machine_json import component_for, describe
@@ -145,7 +147,7 @@ def test_synthesis_accepts_it(tmp_path):
     assert "DP16KD" in cells and "MULT18X18D" in cells
 
 
-@pytest.mark.parametrize("name", COMPONENTS)
+@pytest.mark.parametrize("name", chosen(COMPONENTS, *BOARDS, *list(COMPONENTS)[::4]))
 def test_ports_come_from_the_signature(tmp_path, name):
     """Of every component, in the smallest machine too, where some signals have no bits; and
     each passes the lint by itself."""

@@ -24,7 +24,7 @@ from cardcage.testbenches.figures.merge_costs import (
 from cardcage.testbenches.figures.sent_in_rtl import PointJob
 from cardcage.testbenches.fpga.boards import BOARDS
 from cardcage.testbenches.fpga.place_and_route import Placement
-from cardcage.testbenches.frames.responses import MachineError
+from cardcage.testbenches.support.machine_error import MachineError
 
 SCENE = FigureScene("few", "random:n=12,size=5,seed=5")
 CHAIN = MergeCage("C", "2x(PMC)", {"P": "element", "M": "unit-of-chain", "C": "chain-merge"})

@@ -10,7 +10,7 @@ from amaranth.lib.wiring import In
 from cardcage.hdl.machine import Machine
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.fpga.domain import Domain
-from cardcage.testbenches.frames.responses import MachineError
+from cardcage.testbenches.support.machine_error import MachineError
 
 CAGE = {"cards": "PMMPMM", "size": (16, 16), "memory_ports": 2}
 

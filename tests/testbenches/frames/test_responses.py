@@ -12,7 +12,8 @@ from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.engines.engine import EngineRun, Job, Scan
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.frames.conversation import owed_at_boot, owed_to, responses_owed
-from cardcage.testbenches.frames.responses import Answers, MachineError
+from cardcage.testbenches.frames.responses import Answers
+from cardcage.testbenches.support.machine_error import MachineError
 
 CAGE = MachineConfiguration("PMPM", 4, 4)
 BOOT = [*owed_at_boot(organisation_of(CAGE))[:-1], (ResponseKind.BOOTED, 70)]

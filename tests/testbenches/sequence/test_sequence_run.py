@@ -6,15 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from suite.cases import EVERY
 
 from cardcage.golden.planning.machine_plan import plan
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.testbenches.engines import choose_engine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
-from cardcage.testbenches.frames.responses import MachineError
 from cardcage.testbenches.machine_options import MachineOptions
 from cardcage.testbenches.sequence.sequence_run import SequenceCommands, simulate_sequence
+from cardcage.testbenches.support.machine_error import MachineError
 from cardcage.testbenches.views.scene_frames import SceneFrames
 
 try:
@@ -45,9 +46,9 @@ def frames_of(configuration, lists=LISTS, **options):
 
 
 @pytest.mark.parametrize(("cards", "fields", "options"), [
-    ("PMM", {}, {}),
+    pytest.param("PMM", {}, {}, marks=EVERY),
     ("PMM", {}, {"depths": "all", "stall_seed": 5, "memory_seed": 6}),
-    ("2x(PMC)", {}, {"depths": "all", "stall_seed": 7}),
+    pytest.param("2x(PMC)", {}, {"depths": "all", "stall_seed": 7}, marks=EVERY),
     ("2x(PMC)", {"retain": True}, {"memory_seed": 8}),
     ("2x(PMT)", {"memory_ports": 2}, {"stall_seed": 9}),
 ])
