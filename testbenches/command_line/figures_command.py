@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ..engines.choose_engine import AUTO, ENGINES
+from ..engines.choose_engine import AUTO, ENGINE_NAMES
 from ..support.atomic_output import atomic_folder, output_errors
 from ..support.progress import step_bar
 from ..support.text_table import print_tables, tables_text
@@ -35,7 +35,7 @@ PAPERS = ("cox-hanrahan", "ellsworth", "blazek")
 @click.option("--cells", is_flag=True, help="cox-hanrahan: also place and route the boards of the "
               "last table, some minutes each, the direct merge more than a quarter of an hour; "
               "without it earlier results are shown.")
-@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+@click.option("--engine", type=click.Choice([AUTO, *ENGINE_NAMES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--json", "as_json", is_flag=True, help="For programs: print one object.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("cardcage-out"),

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from ..engines.choose_engine import AUTO, ENGINES
+from ..engines.choose_engine import AUTO, ENGINE_NAMES
 from ..precision.precision_table import precision_table, precision_text
 from ..precision.scene_precision import (
     NO_ENGINE,
@@ -26,7 +26,7 @@ from .command_options import machine_options_of_any_precision
 @click.command(name="precision")
 @click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
 @machine_options_of_any_precision
-@click.option("--engine", type=click.Choice([AUTO, *ENGINES, NO_ENGINE]), default=AUTO,
+@click.option("--engine", type=click.Choice([AUTO, *ENGINE_NAMES, NO_ENGINE]), default=AUTO,
               show_default=True, help="The simulator that counts cycles; none counts none.")
 @click.option("--simulate", type=click.Choice(["few", "all"]), help="Fraction bits to simulate; "
               "few: 0, those that hold depth to 1 LSB, exact.  [default: all, few with pysim]")

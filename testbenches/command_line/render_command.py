@@ -9,7 +9,7 @@ import click
 
 from ...golden.scene_display_list import description_of
 from ...golden.specification.errors import InputError
-from ..engines.choose_engine import AUTO, ENGINES
+from ..engines.choose_engine import AUTO, ENGINE_NAMES
 from ..render import DEFAULT_SCENE, prepare_render
 from ..render_frames import FramesOptions, check_alone, prepare_frames
 from ..support.progress import busy, progress_bar
@@ -24,7 +24,7 @@ PATIENCE_CYCLES = {"pysim": 300_000, "verilator": 30_000_000}
 @click.command(name="render")
 @click.argument("scene", default=DEFAULT_SCENE, metavar="[SCENE]")
 @machine_options
-@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+@click.option("--engine", type=click.Choice([AUTO, *ENGINE_NAMES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
               help="Start with random words in every memory, as after power-on.")

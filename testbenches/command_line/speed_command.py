@@ -13,7 +13,7 @@ import click
 from ...golden.specification.configuration import RANGES
 from ...golden.specification.errors import InputError
 from ...golden.specification.regions import Balance
-from ..engines.choose_engine import ENGINES, make_engine
+from ..engines.choose_engine import ENGINE_NAMES, make_engine
 from ..machine_options import SETUPS, MachineOptions
 from ..speed.baseline import against, load_baseline
 from ..speed.cases import DEFAULT_CASES, ORDERS, case_names, check_case
@@ -70,7 +70,7 @@ def _numbers(least: int, most: int) -> Several:
 @view_options
 @click.option("--all", "everything", is_flag=True, help="Every case, order and machine that no "
               "option restricts: hours.")
-@click.option("--engine", type=click.Choice([*ENGINES, MODEL]), default="verilator",
+@click.option("--engine", type=click.Choice([*ENGINE_NAMES, MODEL]), default="verilator",
               show_default=True, help="The simulator; model simulates nothing and asks the cycle "
               "model.")
 @click.option("--json", "json_file", type=click.Path(path_type=Path), metavar="FILE",

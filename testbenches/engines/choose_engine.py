@@ -26,6 +26,7 @@ def _verilator() -> Engine:
 
 #: What makes each engine, the fastest first.  The last one works everywhere, and writes waveforms.
 ENGINES = {"verilator": _verilator, "pysim": _pysim}
+ENGINE_NAMES = tuple(ENGINES)
 
 
 class AutoEngine:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from counted_lists import list_of
 from cycle_lists import scene
+from suite.cases import chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
@@ -53,7 +54,7 @@ def test_nodes_take_the_predicted_clocks(cards, retained):
     assert counted(machine, listed) == predict_cycles(machine, listed, retained=retained).cycles
 
 
-@pytest.mark.parametrize("cards", ["2x(PMT)", "3x(PMMT)"])
+@pytest.mark.parametrize("cards", chosen(["2x(PMT)", "3x(PMMT)"], "3x(PMMT)"))
 def test_a_merge_takes_the_predicted_clocks(cards):
     """With two ports, to the clock; ``tests/machine/nodes/test_one_port_merges.py`` has one."""
     listed = scene(5, n=30, size=12)

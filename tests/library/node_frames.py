@@ -41,8 +41,7 @@ MODELS = {
     "bus of two of two elements": ("2x(PMMPMMS)FF", (13, 7), {"list_words": 40}),
 }
 #: As parameters.
-NAMES = chosen(MODELS, "chain of three, vertices", "tree of five, vertices, two ports",
-               "bus of four, vertices")
+NAMES = chosen(MODELS, "chain of three, vertices", "bus of four, vertices")
 
 
 def compiled():

@@ -17,6 +17,7 @@ LIST = random_list(7, 12, width=16, height=16)
 ORDERS = sorted({"P" + "".join(rest) for rest in itertools.permutations("PMMMM")})
 
 
+@EVERY
 def test_every_legal_order_gives_the_same_picture():
     assert len(ORDERS) == 5
     pictures, work = [], {}

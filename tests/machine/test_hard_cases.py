@@ -24,8 +24,8 @@ CARDS = {(32, 32): "PMPMMM", (97, 61): "PMM", (1000, 333): "PMM", (640, 480): "P
 #: once where errors add up over a large picture.
 PRECISIONS = [((32, 32), "exact"), ((32, 32), 6), ((32, 32), 0), ((97, 61), "exact"),
               ((1000, 333), "exact"), ((1000, 333), 0), ((640, 480), "exact"), ((640, 480), 6)]
-#: Each size once, and each precision.
-SUITE = ((32, 32), "exact"), ((97, 61), "exact"), ((1000, 333), 0), ((640, 480), 6)
+#: What most cases have, and the largest errors.
+SUITE = ((32, 32), "exact"), ((97, 61), "exact"), ((1000, 333), 0)
 
 LISTS = {name: case.make() for name, case in HARD_CASES.items()}
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from frames import check, random_list
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.testbenches.cocotb_bench.engine import CocotbEngine
@@ -13,6 +14,7 @@ from cardcage.testbenches.frames.frame_job import frame_job
 from cardcage.testbenches.frames.simulation import simulate
 
 
+@EVERY
 def test_three_identical_frames():
     try:
         find_verilator()

@@ -23,7 +23,7 @@ from ...atlas.atlas import (
 )
 from ...atlas.atlas_facts import atlas_facts
 from ...atlas.atlas_table import headline, tables
-from ...engines.choose_engine import AUTO, ENGINES
+from ...engines.choose_engine import AUTO, ENGINE_NAMES
 from ...machine_options import MachineOptions
 from ...support.progress import points_bar
 from ...support.text_table import print_tables, tables_text
@@ -62,7 +62,7 @@ _OF_MACHINE = ("memory_ports", "clocks_per_pixel", "packet", "view", "zoom", "ba
               "each picture and each count with golden: minutes for large cages.")
 @click.option("--check-node", is_flag=True, help="Of each chain and tree with lists, however "
               "large, simulate one node in RTL, with the pixels that the model says come in.")
-@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+@click.option("--engine", type=click.Choice([AUTO, *ENGINE_NAMES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--processes", type=click.IntRange(1), metavar="N",
               help="On this machine, at the same time.  [default: as many as there are cores]")

@@ -18,7 +18,7 @@ from ...comparison.compare_cages import (
 )
 from ...comparison.comparison_facts import comparison_facts
 from ...comparison.comparison_table import comparison_table, comparison_text
-from ...engines.choose_engine import AUTO, ENGINES
+from ...engines.choose_engine import AUTO, ENGINE_NAMES
 from ...render import DEFAULT_SCENE
 from ...support.progress import step_bar
 from ..command_group import EXIT_DIFFERENT, warn
@@ -37,7 +37,7 @@ from ..command_options import Several, machine_options_of_cages, sequence_option
               "of all of them the cycle model is asked.")
 @click.option("--cells", is_flag=True, help="Also count the cells of every board with yosys, half "
               "a minute for each cage.")
-@click.option("--engine", type=click.Choice([AUTO, *ENGINES]), default=AUTO, show_default=True,
+@click.option("--engine", type=click.Choice([AUTO, *ENGINE_NAMES]), default=AUTO, show_default=True,
               help="The simulator.")
 @click.option("--random-memory", type=click.IntRange(0), metavar="SEED",
               help="Start with random words in every memory, as after power-on.")

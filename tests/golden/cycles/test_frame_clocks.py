@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.frame_clocks import (
@@ -23,11 +24,12 @@ from cardcage.testbenches.frames.setup_timing import setup_timing
 LIST = make_display_list("random:n=25,size=12,seed=5", width=24, height=16).display_list
 
 
-SETUP = {"setup": "hardware", "setup_interval": 40}
+SETUP = {"setup": "hardware", "setup_interval": 256}
 
 
 @pytest.mark.parametrize(("cards", "options"), [
-    ("PM", {}), ("2x(PMM)", {"memory_ports": 2}), ("PMPMMM", {}), ("2x(PM)", SETUP)])
+    ("PM", {}), ("2x(PMM)", {"memory_ports": 2}),
+    pytest.param("PMPMMM", {}, marks=EVERY), pytest.param("2x(PM)", SETUP, marks=EVERY)])
 def test_a_frame(cards, options):
     machine = wide_machine(LIST, cards=cards, clocks_per_pixel=2, **options)
     job = frame_job(machine, LIST)

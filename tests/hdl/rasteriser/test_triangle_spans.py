@@ -15,6 +15,7 @@ from hdl_bench.pictures import (
     small_machine,
 )
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
+from suite.cases import chosen
 
 from cardcage.golden.specification import commands
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
@@ -155,7 +156,7 @@ def test_spans_are_the_covered_pixels_of_the_domain(machine, seed, skew):
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("skew", [False, True])
+@pytest.mark.parametrize("skew", chosen([False, True], True))
 def test_latency_and_throughput(machine, skew):
     cards, (first, end), words, (width, height) = MACHINES[machine]
     configuration = small_machine(cards, width, height, words=words, skew=skew)
@@ -213,7 +214,7 @@ def any_outlines(configuration, first, end, source, count):
     return found
 
 
-@pytest.mark.parametrize("on_screen", [False, True])
+@pytest.mark.parametrize("on_screen", chosen([False, True], True))
 @pytest.mark.parametrize("machine", [*MACHINES, *IN_SQUARES])
 def test_whatever_the_outline_its_spans_end_and_lie_in_the_picture(machine, on_screen):
     """Also where columns have no sign, but bits for more than the picture has."""

@@ -14,6 +14,7 @@ from hdl_bench.regions import (
     region_machine,
 )
 from hdl_bench.streams import Sink, Source, no_pause, once, pauses
+from suite.cases import chosen
 
 from cardcage.golden.specification import commands
 from cardcage.hdl.rasteriser.triangle_spans import TriangleSpans
@@ -150,7 +151,7 @@ def any_outlines(case, seed, count):
                          source.choice([bits for bits in range(1, 16) if bits & ~own == 0])}
 
 
-@pytest.mark.parametrize("on_screen", [False, True])
+@pytest.mark.parametrize("on_screen", chosen([False, True], True))
 @pytest.mark.parametrize("machine", MACHINES)
 def test_whatever_the_outline_its_spans_end_and_lie_in_its_regions(machine, on_screen):
     """Also where columns have no sign, but bits for more than the picture has."""

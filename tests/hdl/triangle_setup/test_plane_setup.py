@@ -7,6 +7,7 @@ import pytest
 from hdl_bench.bench import Drive, rejects, simulate
 from hdl_bench.pictures import prepare, random_triangles, small_machine
 from hdl_bench.pipelines import Results, Starts
+from suite.cases import chosen
 
 from cardcage.golden.specification.configuration import MAXIMUM_SETUP_INTERVAL
 from cardcage.hdl.triangle_setup.plane_setup import PlaneSetup, Slot
@@ -87,7 +88,8 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("interpolant", ["depth", "red"])
-@pytest.mark.parametrize("kind", MACHINES)
+@pytest.mark.parametrize("kind", chosen(
+    MACHINES, "a stage a bit", "a few stages", "one divider", "many bits", "both halved"))
 def test_equal_to_golden_at_random_times(kind, interpolant):
     configuration = small_machine("PM", **{"width": 16, "height": 16, "shading": "gouraud"}
                                   | MACHINES[kind])

@@ -8,7 +8,8 @@ EVERY = pytest.mark.every
 
 def chosen(cases, *names):
     """Parameters for all ``cases``, in their order: those named are run each time, the others only
-    with ``--every``.  Raises ``ValueError`` where a name is no case."""
+    with ``--every``.  A tuple is a case of one parameter.  Raises ``ValueError`` where a name is no
+    case."""
     if unknown := [name for name in names if name not in cases]:
         raise ValueError(f"no such case: {', '.join(map(str, unknown))}")
-    return [case if case in names else pytest.param(case, marks=EVERY) for case in cases]
+    return [pytest.param(case, marks=[EVERY] * (case not in names)) for case in cases]

@@ -151,7 +151,7 @@ PACES = {
 
 
 @pytest.mark.parametrize(("bound", "retained"), [
-    ("drawing", True), ("drawing", False), ("merging", False),
+    ("drawing", True), ("drawing", False), pytest.param("merging", False, marks=EVERY),
     pytest.param("a scan", True, marks=EVERY)])
 def test_a_frame_takes_what_takes_longest(bound, retained, record_property):
     """Drawing, merging, or whole scans, of which each picture waits for one: from the second

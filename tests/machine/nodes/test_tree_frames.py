@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from frames import PIXEL, SCREEN, check, joined, random_list, triangles
-from suite.cases import chosen
+from suite.cases import EVERY, chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.frame_clocks import most_frame_clocks
@@ -62,8 +62,7 @@ CAGES = {
 
 
 @pytest.mark.parametrize("cage", chosen(
-    CAGES, "two of one unit, in turn", "three of two elements, two ports",
-    "coarser, words for a quarter"))
+    CAGES, "two of one unit, in turn", "three of two elements, two ports"))
 def test_whole_frames(cage):
     """From random memory, with a host that stalls; ties between nodes in half of it."""
     cards, options = CAGES[cage]
@@ -118,6 +117,7 @@ def bar(traffic: Traffic, words: int) -> float:
     return 1.05 * sum(steps) + sum(64 + 4 * 2**step + words / 4096 for step in range(len(steps)))
 
 
+@EVERY
 def test_a_pixel_a_clock_and_little_else(record_property):
     """The longest list of each step, and a few clocks for the step and for each unit."""
     lists = [same_depths(4, 1), triangles([PIXEL] * 4, [[5] * 3] * 4, [[[1, 2, 3]] * 3] * 4),

@@ -26,7 +26,7 @@ MODELS = {
     "bus of two": ("2x(PMS)F", {"packet": "contiguous", "shading": "flat", "order_bits": 0,
                                 "setup_interval": 64}),
 }
-NAMES = chosen(MODELS, "chain of three", "bus of two")
+NAMES = chosen(MODELS, "chain of three")
 MESHES = (0, 1, 2, 3, 7)
 
 #: Clocks from the frame's start until its first object is broadcast, and from its last command

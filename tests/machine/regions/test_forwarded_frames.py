@@ -18,7 +18,7 @@ from cardcage.testbenches.frames.responses import Answers
 from cardcage.testbenches.frames.setup_timing import setup_timing
 
 #: All of them take minutes to compile.
-SUITE = chosen(MODELS, "three strips, one port", "four of a grid")
+SUITE = chosen(MODELS, "three strips, one port")
 
 #: Of the clocks to draw.
 ACCURACY = 0.01

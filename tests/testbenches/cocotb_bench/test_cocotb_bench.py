@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from suite.cases import EVERY, chosen
 
 from cardcage.golden.organisations.machine_facts import machine_facts
 from cardcage.golden.planning.machine_plan import plan
@@ -69,7 +70,7 @@ def spoilt():
     return text
 
 
-@pytest.mark.parametrize("name", SIMULATORS)
+@pytest.mark.parametrize("name", chosen(SIMULATORS, "verilator"))
 def test_every_simulator_agrees_with_golden_and_pysim(name):
     engine = found(name)
     comparison = compare(MACHINE, LISTED, simulate(MACHINE, LISTED, engine, memory_seed=7))
@@ -105,6 +106,7 @@ def test_a_spoilt_netlist_is_told_by_its_first_wrong_pixel(tmp_path):
     assert f"cocotb on {name}" in done.stdout
 
 
+@EVERY
 def test_a_machine_that_takes_an_offer_back_is_caught():
     wrapper = """
 module machine(input clk, rst, commands__valid, responses__ready,

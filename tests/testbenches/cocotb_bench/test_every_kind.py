@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 from click.testing import CliRunner
-from suite.cases import chosen
+from suite.cases import EVERY, chosen
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.scene_display_list import make_display_list
@@ -165,7 +165,7 @@ def simulator():
 
 @pytest.mark.parametrize("options", [
     ["--cards", "PMM", "--setup", "small", "--skew", "--memory-ports", "1", "--words", "4"],
-    ["--cards", "3x(PM)", "--regions", "2x2", "--memory-ports", "2"],
+    pytest.param(["--cards", "3x(PM)", "--regions", "2x2", "--memory-ports", "2"], marks=EVERY),
 ], ids=lambda options: "-".join(options).replace("--", ""))
 def test_from_export_to_the_verdict(tmp_path, simulator, options):
     """As the page says: export a machine for a list, check it, be told that it is equal."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from refusals import refusal
+from suite.cases import EVERY
 
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.command_line.figures_command import PAPERS
@@ -85,6 +86,7 @@ def test_files_and_facts(place):
         assert claim["claim"] in result.stdout
 
 
+@EVERY
 def test_with_machines(place):
     result = run("cox-hanrahan", "--size", "12x12", "--engine", "pysim", "--json")
     assert result.exit_code == 0, result.output

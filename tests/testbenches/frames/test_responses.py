@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from suite.cases import EVERY
 
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification import commands
@@ -84,9 +85,10 @@ def test_a_fault_and_a_wrong_resolution():
 @pytest.mark.parametrize("configuration", [
     CAGE, MachineConfiguration("PMM", 4, 4, setup="hardware"),
     MachineConfiguration("PMMM", 4, 4, words=16, allow_orphans=True),
-    MachineConfiguration("PMMC PMPMC", 4, 4), MachineConfiguration("2x(PMS)FF", 4, 4),
+    pytest.param(MachineConfiguration("PMMC PMPMC", 4, 4), marks=EVERY),
+    pytest.param(MachineConfiguration("2x(PMS)FF", 4, 4), marks=EVERY),
     MachineConfiguration("PMMS MPMS FFFF", 4, 4, allow_orphans=True),
-    MachineConfiguration("2x(PMS)FFF", 4, 4, allow_orphans=True),
+    pytest.param(MachineConfiguration("2x(PMS)FFF", 4, 4, allow_orphans=True), marks=EVERY),
     MachineConfiguration("PPPDMM", 4, 4), MachineConfiguration("PDMMMM", 4, 4, words=2),
     MachineConfiguration("PPDMMM", 4, 4, words=16, allow_orphans=True)],
     ids=lambda configuration: configuration.cards)

@@ -49,7 +49,7 @@ def frames_of(configuration, lists=LISTS, **options):
     pytest.param("PMM", {}, {}, marks=EVERY),
     ("PMM", {}, {"depths": "all", "stall_seed": 5, "memory_seed": 6}),
     pytest.param("2x(PMC)", {}, {"depths": "all", "stall_seed": 7}, marks=EVERY),
-    ("2x(PMC)", {"retain": True}, {"memory_seed": 8}),
+    pytest.param("2x(PMC)", {"retain": True}, {"memory_seed": 8}, marks=EVERY),
     ("2x(PMT)", {"memory_ports": 2}, {"stall_seed": 9}),
 ])
 def test_each_in_its_turn(cards, fields, options):

@@ -255,6 +255,7 @@ def verilator_alone(monkeypatch):
                         {"verilator": VerilatorEngine})
 
 
+@EVERY
 @pytest.mark.usefixtures("verilator_alone")
 def test_one_port_within_five_percent_of_its_bound(tmp_path):
     """Small triangles: rows without fragments, unequal work, and two accesses a fragment."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from suite.cases import EVERY
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.organisations.organisation_of import organisation_of
@@ -71,6 +72,7 @@ def test_golden_benchmark():
     assert re.search(r"exact +best +[\d.]+ ms, median +[\d.]+ ms", done.output)
 
 
+@EVERY
 def test_model_building(monkeypatch):
     try:
         find_verilator()
