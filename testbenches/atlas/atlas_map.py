@@ -99,7 +99,7 @@ KINDS = {None: "host broadcast", "C": "chain", "T": "tree", "S": "bus", "D": "di
 
 #: Where a cage makes the triangles of objects → what is said of that.
 MAKERS: dict[Objects, str] = {"nodes": "objects in nodes", "elements": "objects in elements",
-                              "controller": "objects in controller"}
+                              "controller": "objects at the controller"}
 
 
 def finest(atlas: Atlas) -> FractionBits:

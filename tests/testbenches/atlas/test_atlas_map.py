@@ -58,7 +58,7 @@ def test_kinds_have_names():
     assert [kind_of(Cage.named(name)) for name in (
         "4x(PMMT)@nodes", "4x(PMM)/1x4@elements", "PM@controller")] == [
         "tree, objects in nodes", "regions 1x4, objects in elements",
-        "host broadcast, objects in controller"]
+        "host broadcast, objects at the controller"]
 
 
 def test_the_files_tell_the_same(atlas, tmp_path, monkeypatch):
@@ -133,7 +133,7 @@ def test_every_word_of_a_chart_is_on_it(atlas):
         assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
     assert [text.get_text() for text in error.legends[0].get_texts()] == [
         "host broadcast", "regions 16x16, objects in elements",
-        "host broadcast, objects in controller"]
+        "host broadcast, objects at the controller"]
     assert error.get_suptitle() == "1 element at 16x16: the most elements, the largest size"
     for axes in drawn.axes:
         cell = axes.patches[0].get_window_extent()
