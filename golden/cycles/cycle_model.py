@@ -20,9 +20,9 @@ pixels of their own are followed clock by clock (``direct``): they wait for memo
 one another.  Where regions are dealt out a triangle is walked visit by visit (``regions``).
 
 Where units have one port each span is followed by itself, and its clocks are a model
-too: what reads, writes and the scan's slots come to on average.  The model does not know
-where the scan is as a list begins, so for a list that takes less than a few scan lines
-it may be five percent off.
+too: what reads and writes come to on average, and the scan's slots.  Where it is not told
+where the scan is as a list begins, a list that takes less than a scan may be five percent off,
+and with regions, which the scan reads one after another, twenty.
 """
 
 from __future__ import annotations
@@ -99,7 +99,8 @@ class CyclePrediction:
 def predict_cycles(configuration: MachineConfiguration, display_list: DisplayList,
                    pipeline: Pipeline = PIPELINE, after: DisplayList | None = None,
                    setup: SetupTiming | None = None, retained: bool = False,
-                   table: Int64 | None = None, begin: int | None = None) -> CyclePrediction:
+                   table: Int64 | None = None, begin: int | None = None,
+                   shown: Int64 | None = None) -> CyclePrediction:
     """The clocks for ``display_list``.
 
     ``after`` was drawn before on the same picture: it hides what lies behind.  ``setup`` is the
@@ -107,18 +108,20 @@ def predict_cycles(configuration: MachineConfiguration, display_list: DisplayLis
     machine.  ``retained``: the nodes draw it from their lists.  ``table``: what regions are dealt
     out by, int64 (regions,), or None for what a machine begins with.  ``begin``: the first triangle
     is taken, or the command to draw the lists, so many clocks after a scan began to show its first
-    line; None where nobody knows.  Only where elements share units of one port is it looked at:
-    then they are within 2 % of the machine, lists of a few scan lines included.  Precision does not
-    matter to the clocks.
+    line; None where nobody knows.  Only where units have one port is it looked at: then lists of
+    a few scan lines are within 2 % of the machine, too.  ``shown``: the table of the picture that
+    is shown meanwhile, by which the scan reads, if it is another; before the first one is shown
+    nobody has written it.  Precision does not matter to the clocks.
     """
     if configuration.merges_directly:
         return _predict_direct(configuration, display_list, pipeline, after, setup, retained,
                                begin)
     organisation = organisation_of(configuration).dealt(table)
     works: list[Any] = (
-        [RegionWork(organisation, display_list, pipeline, after)]
+        [RegionWork(organisation, display_list, pipeline, after, begin,
+                    None if shown is None else organisation.dealt(shown))]
         if isinstance(organisation, DealtRegions) else
-        [NodeWork(organisation, display_list, node, pipeline, after)
+        [NodeWork(organisation, display_list, node, pipeline, after, begin)
          for node in range(configuration.nodes)])
     if configuration.forwards_objects and setup is not None:
         return _predict_forwarded(configuration, display_list, works[0], pipeline, setup)

@@ -18,8 +18,8 @@ from ..specification.sampling_grid import Grid
 from .broadcast import Element
 from .element_latencies import Pipeline
 from .element_spans import lattice_spans
-from .one_port_element import OnePort
-from .port_accesses import PortAccesses
+from .one_port.one_port_element import OnePort
+from .one_port.port_accesses import PortAccesses
 from .row_clocks import Entries, WalkedSpans, entries_of
 from .two_port_element import TwoPorts
 
@@ -54,11 +54,13 @@ class NodeWork:
     ``bound``      float64 (elements,): clocks in which each alone, all triangles at hand, finds its
                    rows, and in which it has a fragment each, the greater; of triangles asked for
 
-    The list ``after`` was drawn before it, by all nodes.
+    The list ``after`` was drawn before it, by all nodes.  ``begin``: as of ``predict_cycles``.
+    ``scanned``: as of ``OnePort``.
     """
 
     def __init__(self, organisation: Organisation, display_list: DisplayList, node: int,
-                 pipeline: Pipeline, after: DisplayList | None = None) -> None:
+                 pipeline: Pipeline, after: DisplayList | None = None,
+                 begin: int | None = None, scanned: Organisation | None = None) -> None:
         configuration = organisation.configuration
         own, listed = share_of_node(configuration, display_list, node)
         before = None if after is None else share_of_node(configuration, after, node)[1]
@@ -68,7 +70,7 @@ class NodeWork:
         self._pipeline = pipeline
         self._ports: _Ports = (
             OnePort(organisation, PortAccesses(organisation, listed, self._triangles, before, node),
-                    pipeline, node)
+                    pipeline, node, begin, scanned)
             if configuration.memory_ports == 1
             else TwoPorts(len(self._organisation.domains), pipeline))
         self.elements: Sequence[Element] = self._ports.elements

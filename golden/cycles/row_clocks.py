@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..organisations.organisation import ElementBlock
 from .element_latencies import Pipeline
 from .element_spans import LatticeSpans
-from .port_accesses import DrawnSpans
+from .one_port.port_accesses import DrawnSpans
 
 Bool = NDArray[np.bool_]
 Int64 = NDArray[np.int64]

@@ -75,11 +75,21 @@ class NodeNeeds:
     @property
     def order_bits(self) -> int:
         """The fewest; ``InputError`` where they are more than a machine may have."""
-        node_bits, shares = self._configuration.node_order_bits, self.shares
+        node_bits = self._configuration.node_order_bits
         if node_bits and not self.meets:
             return 0
-        if not self.ties:
-            return node_bits
+        return self.bits_of_rounds if self.ties else node_bits
+
+    @property
+    def keeps_rounds(self) -> bool:
+        """The fewest order bits hold a round."""
+        return self.order_bits > self._configuration.node_order_bits
+
+    @property
+    def bits_of_rounds(self) -> int:
+        """Order bits that hold every round, whether triangles tie or not; ``InputError`` where they
+        are more than a machine may have."""
+        node_bits, shares = self._configuration.node_order_bits, self.shares
         most = MAXIMUM_ORDER_BITS - node_bits
         if shares.order_bits > most:
             fewest = -(-shares.items // (shares.nodes << most))

@@ -27,10 +27,15 @@ def needs_of_nodes(machine: MachineConfiguration, display_lists: Sequence[Displa
 
 def fields_of_nodes(nodes: Sequence[NodeNeeds], retain: bool, rest: dict[str, Any]
                     ) -> dict[str, int]:
-    """The fields that are planned for nodes, those that are given left out."""
+    """The fields that are planned for nodes, those that are given left out.
+
+    A machine that keeps the round of one list keeps those of all.
+    """
     planned: dict[str, int] = {}
     if nodes and rest.get("order_bits") is None:
-        planned["order_bits"] = max(each.order_bits for each in nodes)
+        rounds = any(each.keeps_rounds for each in nodes)
+        planned["order_bits"] = max(each.bits_of_rounds if rounds else each.order_bits
+                                    for each in nodes)
     if nodes and retain and not rest.get("list_words"):
         planned["list_words"] = max(each.list_words for each in nodes)
     return planned

@@ -23,7 +23,7 @@ from cardcage.golden.cycles.objects.object_setup import (
     OBJECTS_WAITING,
     QUEUE_LATENCY,
 )
-from cardcage.golden.cycles.one_port_lanes import LANE_START
+from cardcage.golden.cycles.one_port.one_port_lanes import LANE_START
 from cardcage.golden.cycles.received_pixels import LANE_CLOCKS
 from cardcage.golden.specification import commands
 from cardcage.golden.specification.commands import Opcode

@@ -23,6 +23,14 @@ from cardcage.testbenches.frames.responses import Answers
 FRAMES = 8
 
 
+def first_line(machine):
+    """Clocks from the beginning of a scan until it fetches the first pixel."""
+    timing = machine.timing
+    return machine.clocks_per_pixel * (
+        timing.horizontal_sync + timing.horizontal_back
+        + (timing.vertical_sync + timing.vertical_back) * timing.horizontal_total)
+
+
 def cycles_of(answered, kind):
     return [cycle for found, _, cycle in answered.responses if found == kind]
 

@@ -21,8 +21,9 @@ class RegionWork(NodeWork):
     ``after`` was drawn before it, likewise."""
 
     def __init__(self, organisation: DealtRegions, display_list: DisplayList, pipeline: Pipeline,
-                 after: DisplayList | None = None) -> None:
-        super().__init__(organisation, display_list, 0, pipeline, after)
+                 after: DisplayList | None = None, begin: int | None = None,
+                 scanned: DealtRegions | None = None) -> None:
+        super().__init__(organisation, display_list, 0, pipeline, after, begin, scanned)
         self._dealt = organisation
         self.elements = [RegionElement(ports) for ports in self._ports.elements]
 

@@ -255,3 +255,15 @@ def test_what_a_machine_cannot_draw_in_its_shares(fields, message):
         else:
             with pytest.raises(InputError, match="order_bits 4 for 14 rounds"):
                 fitted(wide(apart, **fields), apart)
+
+
+@pytest.mark.parametrize("cards", CAGES)
+def test_a_machine_of_several_lists_keeps_all_rounds_of_each(cards):
+    """One ties in few rounds; another has many, and nothing ties."""
+    tying, apart = levels(1, count=10), levels(4000, seed=2, count=200)
+    machine = plan([tying, apart], cards=cards, packet=1).configuration
+    alone = plan(apart, cards=cards, packet=1).configuration
+    assert alone.order_bits < plan(tying, cards=cards, packet=1).configuration.order_bits
+    assert machine.order_bits == organisation_of(machine).shares(apart).order_bits
+    for display_list in (tying, apart):
+        assert_same_pictures(display_list, machine, exact.draw(fitted(machine, display_list)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from frame_paces import first_line
 from suite.cases import chosen
 from wide_machines import wide_machine
 
@@ -42,13 +43,10 @@ def merges(configuration, lists):
     words = [word for listed in lists for word in frame_commands(configuration, listed)]
     run = make_engine().run(Job(configuration, words,
                                 responses_owed(organisation_of(configuration), words)))
-    timing = configuration.timing
-    first = (timing.horizontal_sync + timing.horizontal_back
-             + (timing.vertical_sync + timing.vertical_back) * timing.horizontal_total)
     drawn, merged = ([(value, cycle) for kind, value, cycle in run.responses if kind == wanted]
                      for wanted in (ResponseKind.FRAME_DRAWN, ResponseKind.MERGED))
     for (before, cycle), (after, _) in zip(drawn, merged, strict=True):
-        begin = cycle - first * configuration.clocks_per_pixel
+        begin = cycle - first_line(configuration)
         yield begin % configuration.cycles_per_scan, after - before
 
 

@@ -4,6 +4,7 @@ by the cycle model, whose traffic is the machine's to the pixel."""
 from __future__ import annotations
 
 import pytest
+from frame_paces import first_line
 from node_frames import (
     CLEAR_LISTS,
     READ_COUNTERS,
@@ -139,11 +140,3 @@ def test_drawing_into_units_that_the_scan_reads(cage, record_property):
     record_property("measured", f"{cards}, {cage}: drawing into units with one port is predicted "
                                 f"within {max(errors):.1%}")
     assert max(errors) <= ACCURACY
-
-
-def first_line(machine):
-    """Clocks from the beginning of a scan until it fetches the first pixel."""
-    timing = machine.timing
-    return machine.clocks_per_pixel * (
-        timing.horizontal_sync + timing.horizontal_back
-        + (timing.vertical_sync + timing.vertical_back) * timing.horizontal_total)

@@ -10,9 +10,9 @@ from cycle_lists import owner, scene, spans_of
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.element_latencies import Pipeline
-from cardcage.golden.cycles.one_port_element import OnePort
-from cardcage.golden.cycles.one_port_lanes import LANE_START, ElementLanes, scan_shares
-from cardcage.golden.cycles.port_accesses import PortAccesses
+from cardcage.golden.cycles.one_port.one_port_element import OnePort
+from cardcage.golden.cycles.one_port.one_port_lanes import LANE_START, ElementLanes, scan_shares
+from cardcage.golden.cycles.one_port.port_accesses import PortAccesses
 from cardcage.golden.cycles.row_clocks import entries_of
 from cardcage.golden.cycles.two_port_element import TwoPorts
 from cardcage.golden.organisations.organisation_of import organisation_of
@@ -163,7 +163,7 @@ def test_hidden_fragments_take_one_port_a_clock_too(seed, pause, monkeypatch):
             lanes = np.stack([spans.length, np.zeros(len(spans.length))], axis=1)
             return np.stack([lanes, 0 * lanes, lanes], axis=1)
 
-    monkeypatch.setattr("cardcage.golden.cycles.one_port_element.scan_shares",
+    monkeypatch.setattr("cardcage.golden.cycles.one_port.one_port_element.scan_shares",
                         lambda _: np.zeros((1, 2, 2)))
     one = OnePort(organisation_of(configuration), Hidden(), pipeline)
     two = TwoPorts(configuration.processing_elements, pipeline)

@@ -16,10 +16,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..organisations.organisation import Organisation
-from ..organisations.organisation_of import organisation_of
-from ..specification.configuration import MachineConfiguration
-from ..specification.queues import FRAGMENTS_WAITING, depth_lanes
+from ...organisations.organisation import Organisation
+from ...organisations.organisation_of import organisation_of
+from ...specification.configuration import MachineConfiguration
+from ...specification.queues import FRAGMENTS_WAITING, depth_lanes
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]

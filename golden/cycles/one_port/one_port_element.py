@@ -8,30 +8,54 @@ from __future__ import annotations
 
 from collections import deque
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
-from ..organisations.organisation import Organisation
-from .element_latencies import NEVER, Drawn, Pipeline
+from ...organisations.organisation import Organisation
+from ..element_latencies import NEVER, Drawn, Pipeline
+from ..row_clocks import Entries, WalkedSpans
+from .free_clocks import ScannedLanes, lane_slots
 from .one_port_lanes import ElementLanes, SpanAccesses, scan_shares
 from .port_accesses import PortAccesses
-from .row_clocks import Entries, WalkedSpans
 
 #: What leaves the walker for a triangle, each with its ``Entries.offset``; None where it is no span
 #: but only the triangle's end.
 OnePortCost = list[tuple[int, SpanAccesses | None]]
 
 
+class Lanes(Protocol):
+    """The lanes of a processing element: ``ElementLanes`` or ``ScannedLanes``."""
+
+    @property
+    def done(self) -> float: ...
+
+    def take(self, begin: float, accesses: SpanAccesses) -> float: ...
+
+
 class OnePort:
-    """The ports of a node, one of each unit, and the ``elements`` before them."""
+    """The ports of a node, one of each unit, and the ``elements`` before them.
+
+    ``begin``: the first clock is so many after a scan began to show its first line; None where
+    nobody knows.  ``scanned``: as the picture that is shown lies in memory, if otherwise than that
+    which is drawn.
+    """
 
     def __init__(self, organisation: Organisation, accesses: PortAccesses,
-                 pipeline: Pipeline, node: int = 0) -> None:
+                 pipeline: Pipeline, node: int = 0, begin: int | None = None,
+                 scanned: Organisation | None = None) -> None:
         self._accesses = accesses
-        shares = scan_shares(organisation)
-        self.elements = [
-            OnePortElement(ElementLanes(organisation.configuration, shares[:, element]), pipeline)
-            for element, domain in enumerate(organisation.domains) if domain.node == node]
+        own = [element for element, domain in enumerate(organisation.domains)
+               if domain.node == node]
+        lanes: list[Lanes]
+        if begin is None:
+            shares = scan_shares(organisation)
+            lanes = [ElementLanes(organisation.configuration, shares[:, element])
+                     for element in own]
+        else:
+            slots = lane_slots(organisation if scanned is None else scanned)
+            lanes = [ScannedLanes(organisation, slots[:, :, element], begin) for element in own]
+        self.elements = [OnePortElement(each, pipeline) for each in lanes]
 
     @property
     def bound(self) -> float:
@@ -51,7 +75,7 @@ class OnePort:
 class OnePortElement:
     """A processing element that is told its triangles in drawing order."""
 
-    def __init__(self, lanes: ElementLanes, pipeline: Pipeline) -> None:
+    def __init__(self, lanes: Lanes, pipeline: Pipeline) -> None:
         self._pipeline = pipeline
         self._lanes = lanes
         # When each of the last spans was begun.

@@ -11,10 +11,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..organisations.organisation import Organisation
-from ..reference.coverage import Triangles
-from ..reference.exact import draw, fragments
-from ..specification.display_list import DisplayList
+from ...organisations.organisation import Organisation
+from ...reference.coverage import Triangles
+from ...reference.exact import draw, fragments
+from ...specification.display_list import DisplayList
 from .one_port_lanes import lane_of, scan_share
 
 Float64 = NDArray[np.float64]
