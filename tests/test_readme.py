@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from amaranth.sim import Simulator
 from click.testing import CliRunner
+from suite.cases import EVERY
 
 from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.command_line.cli import main
@@ -39,11 +40,14 @@ def test_the_gate_runs_exactly_the_test_command():
     assert command in (ROOT / ".ci" / "run").read_text().splitlines()
 
 
-def test_the_quick_commands_do_what_they_should(tmp_path):
-    assert len(QUICK) >= 4
+@pytest.mark.parametrize("page", [README, pytest.param(PAGE, marks=EVERY)],
+                         ids=["README", "docs/commands.md"])
+def test_the_quick_commands_do_what_they_should(tmp_path, page):
+    quick = [line for line in QUICK if f"\n{line}" in page]
+    assert len(quick) >= 4
     folder = str(Path(sys.executable).parent)
     environment = os.environ | {"PATH": folder + os.pathsep + os.environ["PATH"]}
-    for line in QUICK:  # in order: one replays what another wrote
+    for line in quick:  # in order: one replays what another wrote
         done = subprocess.run(shlex.split(line), cwd=tmp_path, env=environment,
                               capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, f"{line}: {done.stderr}"

@@ -36,7 +36,8 @@ def configuration_of(cards, **changes):
     return small_machine(cards, allow_orphans=cards.startswith("M"), **changes)
 
 
-@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("order", chosen(
+    ORDERS, "only PEs in between", "unequal shares", "orphans on the left"))
 def test_wires(order):
     """Numbers and total along the chain; the lines of each element end at the next one."""
     cards = ORDERS[order]

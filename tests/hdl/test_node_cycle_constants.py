@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from counted_lists import list_of
 from cycle_lists import scene
-from suite.cases import chosen
+from suite.cases import EVERY, chosen
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
@@ -40,7 +40,8 @@ def counted(configuration: MachineConfiguration, listed: DisplayList) -> int:
     return int(accepted[-1] - accepted[start + 1])
 
 
-@pytest.mark.parametrize(("cards", "retained"), [("2x(PMC)", True), ("2x(PMPMMMC)", False)])
+@pytest.mark.parametrize(("cards", "retained"), [
+    ("2x(PMC)", True), pytest.param("2x(PMPMMMC)", False, marks=EVERY)])
 def test_nodes_take_the_predicted_clocks(cards, retained):
     """With two ports, to the clock, where the last triangle of each node ends in the lowest row
     with a pixel of everyone's; with queues that fill."""

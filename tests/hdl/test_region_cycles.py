@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from cycle_lists import scene
+from suite.cases import EVERY
 from wide_machines import wide_machine
 
 from cardcage.golden.cycles.cycle_model import predict_cycles
@@ -74,7 +75,7 @@ def test_rows_without_a_pixel_behind_spans_that_wait():
 
 
 @pytest.mark.parametrize(("seed", "cards", "regions", "fifo"), [
-    (1, "3x(PM)", (5, 7), 5), (2, "2x(PMM)", (10, 4), 16)])
+    (1, "3x(PM)", (5, 7), 5), pytest.param(2, "2x(PMM)", (10, 4), 16, marks=EVERY)])
 def test_the_machine_takes_the_predicted_clocks(seed, cards, regions, fifo):
     print(f"seed {seed}")
     random = np.random.default_rng(seed)

@@ -10,6 +10,7 @@ from amaranth.lib import wiring
 from hdl_bench.bench import Drive, Watch, simulate
 from hdl_bench.pictures import exact_words, prepare, random_triangles, small_machine
 from hdl_bench.streams import Sink, Source
+from suite.cases import chosen
 
 from cardcage.golden.reference import triangle_words
 from cardcage.golden.reference.triangle_setup import scene_fraction_bits
@@ -149,7 +150,7 @@ def test_no_report_until_each_element_is_done(slot):
     assert run.next == [1, 1]
 
 
-@pytest.mark.parametrize("slot", UNITS)
+@pytest.mark.parametrize("slot", chosen(UNITS, *UNITS[::2]))
 def test_no_tag_is_used_again_until_each_unit_is_swept(slot):
     """At boot, and when a frame starts for which there is no tag."""
     run = Run("swept", slot, again=2)
@@ -157,7 +158,7 @@ def test_no_tag_is_used_again_until_each_unit_is_swept(slot):
     assert run.next == [1, 1]
 
 
-@pytest.mark.parametrize("slot", range(ELEMENTS[-1] + 1))
+@pytest.mark.parametrize("slot", chosen(range(ELEMENTS[-1] + 1), 1, 4))
 def test_responses_wait_for_each_slot_that_they_pass(slot):
     """Those from its left come in the meantime: domains, then depths."""
     run = Run("responses", slot, again=3 + TRIANGLES + 2)

@@ -75,7 +75,8 @@ def test_a_skewed_interlace_gives_the_same_picture():
 
 
 @pytest.mark.parametrize(("units", "skew"), [
-    (1, False), (2, False), (16, False), (8, True), pytest.param(4, False, marks=EVERY),
+    (1, False), (8, True), pytest.param(2, False, marks=EVERY),
+    pytest.param(16, False, marks=EVERY), pytest.param(4, False, marks=EVERY),
     pytest.param(8, False, marks=EVERY)])
 def test_fewer_units_of_fixed_words_draw_a_coarser_picture(units, skew):
     """32 words: eight units hold the 256 pixels, one unit an eighth of them."""

@@ -49,7 +49,7 @@ def test_frames_past_the_last_tag(tag_bits, count, cards, ports):
     print(f"scans that repeated a picture: {values}")
 
 
-@pytest.mark.parametrize("ports", [1, 2])
+@pytest.mark.parametrize("ports", chosen([1, 2], 2))
 @pytest.mark.parametrize("tag_bits", chosen([2, 3], 2))
 def test_frames_that_leave_no_idle_clock_wait(waits, tag_bits, ports):
     """One frame after the other is started over, each pixel of it visible several times."""
@@ -89,7 +89,7 @@ def test_with_two_ports_no_update_is_lost(cards):
         draw(spans_twice(seed=seed), cards=cards, seed=seed, memory_ports=2)
 
 
-@pytest.mark.parametrize("ports", [1, 2])
+@pytest.mark.parametrize("ports", chosen([1, 2], 1))
 def test_coarser_pictures_and_padding(ports):
     source = np.random.default_rng(ports)
     for options in ({"words": 16, "maximum_units": 16}, {}):

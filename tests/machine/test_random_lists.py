@@ -53,7 +53,7 @@ def card_orders(draw):
         "P" * extra.count(units))
 
 
-once = settings(max_examples=8, deadline=None, print_blob=True,
+once = settings(max_examples=5, deadline=None, print_blob=True,
                 suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 

@@ -43,7 +43,7 @@ MODELS = {
     "five for eight, two ports": ("5x(P)D8x(M)", (13, 7), {
         **VERTICES, "setup_interval": 1, "memory_ports": 2, "queue": 3, "list_words": 40}),
 }
-NAMES = chosen(MODELS, "two for one, two ports", "three for two")
+NAMES = chosen(MODELS, "three for two")
 
 
 def model(name):

@@ -13,7 +13,7 @@ ELEMENTS = 4
 
 
 @pytest.mark.parametrize(("queue", "least"), [
-    (4, 0.9), pytest.param("element", 0.7, marks=EVERY)])
+    pytest.param(4, 0.9, marks=EVERY), pytest.param("element", 0.7, marks=EVERY)])
 def test_elements_that_draw_the_same_at_the_same_time(queue, least, record_property):
     """Small triangles, the worst for a crossbar, so that elements want one unit again and again;
     of sixteen elements ``python -m testbenches.studies.direct_speed`` prints the figures."""

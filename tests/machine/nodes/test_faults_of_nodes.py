@@ -115,9 +115,9 @@ def cage(cards, **options):
 
 @pytest.mark.parametrize(("cards", "nodes", "fault"), [
     ("PMMMMC PMMC", [4, 2], Fault.NODES_DIFFER),
-    ("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED),
+    pytest.param("PMMMT PMMT", [3, 2], Fault.UNITS_UNSUPPORTED, marks=EVERY),
     ("PMMC PC PMMC", [2, 0, 2], Fault.UNITS_UNSUPPORTED),
-    ("PMMS PMMS FFF", [2, 2], Fault.UNITS_UNSUPPORTED),
+    pytest.param("PMMS PMMS FFF", [2, 2], Fault.UNITS_UNSUPPORTED, marks=EVERY),
     ("PMMS PMS FFF", [2, 1], Fault.UNITS_UNSUPPORTED),
     ("PPDMMM", [3, 3], Fault.UNITS_UNSUPPORTED),
 ])
@@ -143,7 +143,7 @@ def test_boards_pulled_out_of_one_node_only(cards, nodes, fault):
 @pytest.mark.parametrize(("cards", "resolution"), [
     ("PMMMMC PMMMMC", (8, 8)),  # of five nodes
     pytest.param("PMMT PPMMT PMMPT", (8, 4), marks=EVERY),  # and two units of each
-    ("PMMS PPMMS PMMPS FF", (8, 4)),
+    pytest.param("PMMS PPMMS PMMPS FF", (8, 4), marks=EVERY),
     pytest.param("PMS PMS PMS FFFF", (4, 4), marks=EVERY),
     ("PPPDMM", (8, 4)),
 ])

@@ -51,7 +51,7 @@ def merges(configuration, lists):
 
 
 @pytest.mark.parametrize("cage", chosen(
-    CAGES, "one unit", "units that alternate along rows"))
+    CAGES, "units that alternate along rows"))
 def test_a_merge_takes_the_predicted_clocks(cage, record_property):
     cards, options = CAGES[cage]
     lists = [scene(seed) for seed in SEEDS]

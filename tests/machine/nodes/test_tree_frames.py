@@ -62,7 +62,7 @@ CAGES = {
 
 
 @pytest.mark.parametrize("cage", chosen(
-    CAGES, "two of one unit, in turn", "three of two elements, two ports"))
+    CAGES, "three of two elements, two ports"))
 def test_whole_frames(cage):
     """From random memory, with a host that stalls; ties between nodes in half of it."""
     cards, options = CAGES[cage]

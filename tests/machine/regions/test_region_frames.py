@@ -83,7 +83,7 @@ def of_every_kind(configuration, pick, frames):
 
 @pytest.mark.parametrize("stall_seed", [None, 1])
 @pytest.mark.parametrize("name", chosen(
-    MODELS, "three, two ports", "strips, one port"))
+    MODELS, "three, two ports"))
 def test_frames_by_tables_of_the_host(name, stall_seed):
     """From random memory; each table is used from its frame on, a refused one never."""
     configuration = machine(MODELS, name)

@@ -53,7 +53,7 @@ MACHINES = {
 
 
 @pytest.mark.parametrize("name", chosen(
-    MACHINES, "3 elements, all slots full, learnt", "7 elements, hardware"))
+    MACHINES, "3 elements, all slots full, learnt"))
 def test_every_picture_and_every_count(name):
     configuration = plan(LISTS, clocks_per_pixel=2, **MACHINES[name]).configuration
     for options in ({"depths": "last"},

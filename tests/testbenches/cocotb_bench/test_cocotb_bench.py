@@ -90,6 +90,7 @@ def test_every_simulator_agrees_with_golden_and_pysim(name):
         engine.run(replace(job, maximum_cycles=100))
 
 
+@EVERY
 def test_a_spoilt_netlist_is_told_by_its_first_wrong_pixel(tmp_path):
     name = some_simulator()
     verilog, listed = tmp_path / "machine.v", tmp_path / "list.npz"

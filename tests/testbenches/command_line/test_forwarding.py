@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from click.testing import CliRunner
 from refusals import refusal
+from suite.cases import EVERY
 
 from cardcage.golden.objects.object_words import frame_words
 from cardcage.golden.planning.machine_plan import plan
@@ -66,6 +67,7 @@ def test_what_is_planned():
         frame_words(narrow, listed)
 
 
+@EVERY
 def test_what_is_drawn_and_reported(tmp_path):
     rendering = render("some.scene", out=tmp_path / "out", cards="2x(PM)", size=(8, 6),
                        packet=2, objects="elements", regions=(1, 6), setup="small", shading="flat")

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from command_bench.plan import facts, machine_of, run
 from refusals import BAD_SCENES_AND_MACHINES, refusal
+from suite.cases import EVERY
 
 from cardcage.golden.scene_display_list import make_display_list
 from cardcage.golden.specification.errors import InputError
@@ -65,8 +66,9 @@ def test_the_command_looks_at_the_scene_in_the_same_way():
     assert facts("tetra:depth=1", *TINY)["needs"] != planned["needs"]
 
 
-@pytest.mark.parametrize("options", [[], ["--preset", "tiny", "--max-error", 2],
-                                     ["--fraction-bits", 5, "--shading", "flat", "--words", 64]])
+@pytest.mark.parametrize("options", [
+    pytest.param([], marks=EVERY), ["--preset", "tiny", "--max-error", 2],
+    pytest.param(["--fraction-bits", 5, "--shading", "flat", "--words", 64], marks=EVERY)])
 def test_render_and_export_build_this_machine(options):
     planned = facts(SCENE, *TINY, *options)
     words = shlex.split(planned["command"])

@@ -5,6 +5,7 @@ import json
 import pytest
 from click.testing import CliRunner
 from refusals import refusal
+from suite.cases import EVERY
 
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.machine_options import MachineOptions, machine_without_scene, option_words
@@ -127,6 +128,7 @@ def test_the_tables_of_a_sequence(tmp_path, words, said):
         words[-1] if words else "learnt")
 
 
+@EVERY
 def test_cages_side_by_side():
     """What is asked of all is asked of those that can be."""
     result = run("compare", SCENE, "--size", "8x8", "--cards", "PM", "--cards", "3x(PM)/4x2",

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from suite.cases import EVERY, chosen
 from verilog_tools import verilator_lint
 
 from cardcage.golden.planning.machine_plan import plan
@@ -27,6 +28,7 @@ def plans():
             for kind, scene in SCENES.items()}
 
 
+@EVERY
 def test_every_kind_of_cell_is_saved(plans, capsys):
     """All three are held to the one machine for every triangle on the screen."""
     full_machine, = {planned.full for planned in plans.values()}
@@ -56,7 +58,7 @@ def test_a_flat_netlist_has_no_color_interpolator(plans):
     assert not color_interpolators(plans["flat"].configuration)
 
 
-@pytest.mark.parametrize("max_error", [0, 3])
+@pytest.mark.parametrize("max_error", chosen([0, 3], 3))
 @pytest.mark.parametrize("kind", SCENES)
 def test_lint_has_nothing_to_say(tmp_path, kind, max_error):
     """Words of any width: no constant comparison, no operand cut short."""

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
+from suite.cases import EVERY
 
 from cardcage.golden.specification.activity import Activity
 from cardcage.golden.specification.configuration import MachineConfiguration
@@ -116,7 +117,8 @@ def test_json_keys(folder):
 
 
 @pytest.mark.parametrize(("cards", "links"), [
-    ("PMCPMC", 1), ("PMSPMSFF", 2), ("PPDMM", 2)])
+    ("PMCPMC", 1), pytest.param("PMSPMSFF", 2, marks=EVERY),
+    pytest.param("PPDMM", 2, marks=EVERY)])
 def test_what_nodes_sent(draw, tmp_path, cards, links):
     rendering = draw(cards=cards, out=tmp_path / "report")
     facts = json.loads((tmp_path / "report" / "report.json").read_text())
