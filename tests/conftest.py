@@ -47,8 +47,8 @@ def pytest_xdist_make_scheduler(config, log):
 
 def pytest_addoption(parser):
     parser.addoption("--every", action="store_true",
-                     help="every case, in place of some that stand for all: three quarters of an "
-                          "hour on two cores")
+                     help="every case, in place of some that stand for all: half an hour and "
+                          "more on two cores")
 
 
 def pytest_report_header(config):

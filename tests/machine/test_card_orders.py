@@ -62,7 +62,7 @@ def test_a_skewed_interlace_gives_the_same_picture():
     """Of one unit each, of pairs, and of what is neither; and with set-up by either side."""
     options = {"PMPMMM": {"setup": "hardware"}, "PMMMM": {"memory_ports": 2}}
     skewed = {cards: draw(LIST, cards=cards, skew=True, **options.get(cards, {}))
-              for cards in ("4x(PM)", "2x(PMM)", *options)}
+              for cards in ("PMM", "4x(PM)", "2x(PMM)", *options)}
     for cards, different in (("4x(PM)", True), ("2x(PMM)", False)):
         plain = draw(LIST, cards=cards)
         for simulation in skewed.values():

@@ -48,7 +48,6 @@ def test_simulation_beside_a_bare_loop(record_property):
         find_verilator()
     except ToolMissingError as missing:
         pytest.skip(f"simulator verilator: {missing}")
-    listed = make_display_list("teapot", width=64, height=64).display_list
     for size in (64, 256):
         listed = make_display_list("teapot", width=size, height=size).display_list
         machine = plan(listed, cards="4x(PMM)", regions=(8, 8), clocks_per_pixel=2).configuration
