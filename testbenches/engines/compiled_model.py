@@ -2,10 +2,10 @@
 
 What a machine costs grows with its kinds of boards, less with their number.  Boards are modules
 that are not inlined, and their functions are cut into pieces, so that Verilator finds the pieces
-that 16 processing elements have in common and writes each once.  What all models have in common
-is compiled once on a computer (``model_runtime``).  Measured with 16x(PMM): Verilator's
-hierarchical blocks compile each board by itself, and simulate seven times slower; pieces without
-its data-flow optimisation are fewer still, and simulate 1.4 times slower.
+that 16 processing elements have in common and writes each once.  What all models have in common,
+the main program among it, is compiled once on a computer (``model_runtime``).  Measured with
+16x(PMM): Verilator's hierarchical blocks compile each board by itself, and simulate seven times
+slower; pieces without its data-flow optimisation are fewer still, and simulate 1.4 times slower.
 """
 
 from __future__ import annotations
@@ -17,14 +17,24 @@ from pathlib import Path
 
 from ...hdl.machine import BOARDS
 from . import model_runtime
-from .model_runtime import OFTEN, ONCE, check_made, headers, objects, runtime
+from .model_runtime import (
+    OFTEN,
+    ONCE,
+    check_made,
+    engine_text,
+    headers,
+    main_program,
+    objects,
+    runtime,
+)
+from .model_wrapper import TOP
 from .verilator_tool import VerilatorTool
 
 #: Statements at which a function is cut; fewer cost speed for the calls, more leave fewer pieces
 #: that are the same.
 _PIECE = "200"
 
-TRANSLATE = ["--cc", "--top-module", "machine", "-O3", "--x-assign", "fast",
+TRANSLATE = ["--cc", "--top-module", TOP, "-O3", "--x-assign", "fast",
              "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
              "--output-split", "8000", "--output-split-cfuncs", _PIECE]
 
@@ -34,22 +44,29 @@ _UNIT_BYTES = 1 << 20
 NOT_INLINED = "`verilator_config\n" + "".join(
     f'no_inline -module "{name}"\n' for name in BOARDS)
 
-#: All that a program depends on besides its texts and the tool.
-RECIPE = [*TRANSLATE, *model_runtime.RECIPE, str(_UNIT_BYTES), NOT_INLINED]
+#: Sources beside those that Verilator writes.
+_PORTS = ["verilator_model.h", "verilator_model.cpp"]
+
+
+def recipe() -> list[str]:
+    """All that a program depends on besides its texts and the tool."""
+    return [*TRANSLATE, *model_runtime.recipe(), str(_UNIT_BYTES), NOT_INLINED,
+            *map(engine_text, _PORTS)]
 
 
 def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -> None:
     """Build the program ``machine`` in ``folder``.
 
-    ``texts``  ``machine.v``, ``main.cpp`` and what that includes, by name
+    ``texts``  ``machine.v``, ``model.v`` around it, and ``machine_numbers.h``, by name
 
     Raises ``ToolMissingError`` where a tool fails, ``OSError`` where the system has no room.
     """
     work = folder / "work"
     work.mkdir()
-    for name, text in (*texts.items(), ("not_inlined.vlt", NOT_INLINED)):
+    for name, text in (*texts.items(), ("not_inlined.vlt", NOT_INLINED),
+                       *((name, engine_text(name)) for name in _PORTS)):
         (work / name).write_text(text, encoding="utf-8")
-    tool.translate([*TRANSLATE, "--Mdir", ".", "not_inlined.vlt", "machine.v"], work)
+    tool.translate([*TRANSLATE, "--Mdir", ".", "not_inlined.vlt", "machine.v", "model.v"], work)
     sources = sorted(work.glob("*.cpp"), key=lambda path: -path.stat().st_size)
     slow = [path for path in sources if path.stem.endswith("Slow")]
     units = {"once": slow} | {f"often_{number}": unit for number, unit in enumerate(
@@ -57,7 +74,7 @@ def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -
     for name, parts in units.items():
         (work / f"{name}.cc").write_text(ONCE * (name == "once") + "".join(
             f'#include "{part.name}"\n' for part in parts))
-    common, kept = ["-I.", *headers(tool)], runtime(tool)
+    common, kept = ["-I.", *headers(tool)], [main_program(tool), *runtime(tool)]
     tool.compile([[*OFTEN, *common, "-c", f"{name}.cc"] for name in units], work)
     check_made(tool, work, objects(units))
     tool.compile([["-o", "../machine", *objects(units), *kept, "-lpthread"]], work)

@@ -1,4 +1,4 @@
-"""What a compiled model's main program has to know: the text of machine_constants.h."""
+"""What the main program of all compiled models has to know: the text of model_constants.h."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from enum import Enum
 
 from ...golden.specification import commands
 from ...golden.specification.activity import ACTIVITY_BITS
-from ...golden.specification.configuration import MachineConfiguration
 from .activity_record import BUCKETS, DRAWING
 
 
@@ -29,22 +28,16 @@ class End(bytes, Enum):
     VIDEO = b"V"  # the video output is malformed
 
 
-def machine_constants(configuration: MachineConfiguration) -> str:
-    """The header for a machine: its numbers, and the codes of all that passes."""
+def model_constants() -> str:
+    """The header: the codes of all that passes, and how long fields are."""
     values = {
-        "COMMAND_WORDS": commands.command_words(configuration),
         "OPCODE_BITS": commands.OPCODE_BITS,
         "RESPONSE_KIND_BITS": commands.RESPONSE_KIND_BITS,
-        "WIDTH": configuration.width,
-        "HEIGHT": configuration.height,
-        "VERTICAL_SYNC_POSITIVE": int(configuration.timing.vertical_sync_positive),
         "ACTIVITY_BITS": ACTIVITY_BITS,
         "BUCKETS": BUCKETS,
         "DRAWING_OPCODES": sum(1 << opcode for opcode in DRAWING),  # a bit each
     }
-    observed = configuration.processing_elements if configuration.observe else 0
     return "\n".join([
-        f"#define OBSERVED_ELEMENTS {observed}",
         *(f"constexpr unsigned {name} = {value};" for name, value in values.items()),
         _codes("Opcode", "uint8_t", ((opcode.name, int(opcode)) for opcode in commands.Opcode)),
         _codes("ResponseKind", "uint8_t",

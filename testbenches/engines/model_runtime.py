@@ -1,11 +1,14 @@
-"""What models have in common, compiled once on a computer: Verilator's runtime and its headers."""
+"""What models have in common, compiled once on a computer: the main program, Verilator's runtime
+and its headers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import resources
 from pathlib import Path
 
 from ..support.cache import cached, content_hash
+from .model_constants import model_constants
 from .verilator_tool import ToolMissingError, VerilatorTool
 
 #: As fast as -O2 after what Verilator has done, in half the time.
@@ -25,7 +28,18 @@ _RUNTIME = ["-O2", "-std=c++17"]
 _PARTS = ["verilated", "verilated_threads"]
 _HEADER = "verilated_before.h"
 
-RECIPE = [*OFTEN, ONCE, *_RUNTIME]
+_MAIN = ["verilator_main.cpp", "verilator_model.h"]
+_CONSTANTS = "model_constants.h"
+
+
+def engine_text(name: str) -> str:
+    """A source file of this folder."""
+    return (resources.files(__package__) / name).read_text("utf-8")
+
+
+def recipe() -> list[str]:
+    """All that a model depends on besides its texts and the tool."""
+    return [*OFTEN, ONCE, *_RUNTIME, model_constants(), *map(engine_text, _MAIN)]
 
 
 def include(tool: VerilatorTool) -> list[str]:
@@ -44,6 +58,22 @@ def runtime(tool: VerilatorTool) -> list[str]:
 
     folder, _ = cached(content_hash(["runtime", *tool.versions(), *_RUNTIME]), build)
     return [str(folder / name) for name in objects(_PARTS)]
+
+
+def main_program(tool: VerilatorTool) -> str:
+    """The object of the main program, which drives whatever model it is linked with; compiled where
+    it is not kept."""
+    texts = {name: engine_text(name) for name in _MAIN} | {_CONSTANTS: model_constants()}
+
+    def build(folder: Path) -> None:
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        tool.compile([[*_RUNTIME, "-c", _MAIN[0], "-o", "main.o"]], folder)
+        check_made(tool, folder, ["main.o"])
+
+    folder, _ = cached(content_hash(["main program", *tool.versions(), *_RUNTIME, *texts.values()]),
+                       build)
+    return str(folder / "main.o")
 
 
 def headers(tool: VerilatorTool) -> list[str]:

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from importlib import resources
 from importlib.metadata import version
 from itertools import islice
 from pathlib import Path
@@ -24,9 +23,10 @@ from ...golden.specification.configuration import MachineConfiguration
 from ..export.verilog import machine_verilog
 from ..support.cache import cached, content_hash, sources_hash
 from .activity_record import KINDS, ActivityRecord
-from .compiled_model import RECIPE, compile_model
+from .compiled_model import compile_model, recipe
 from .engine import EngineRun, Job, Progress, Scan
-from .model_constants import End, RecordKind, machine_constants
+from .model_constants import End, RecordKind
+from .model_wrapper import machine_numbers, model_wrapper
 from .verilator_tool import ToolMissingError, VerilatorTool, find_verilator
 
 #: A response in the results; a depth buffer has hundreds of thousands.
@@ -74,17 +74,16 @@ class VerilatorEngine:
     def build(self, configuration: MachineConfiguration,
               progress: Progress | None = None) -> tuple[Path, bool]:
         """The program for a configuration, and whether it had to be built."""
-        main = (resources.files(__package__) / "verilator_main.cpp").read_text("utf-8")
-        constants = machine_constants(configuration)
-        key = content_hash([self.verilog or origin(configuration), main, constants, *RECIPE,
+        texts = {"model.v": model_wrapper(configuration),
+                 "machine_numbers.h": machine_numbers(configuration)}
+        key = content_hash([self.verilog or origin(configuration), *texts.values(), *recipe(),
                             *self.tool.versions(), platform.machine()])
 
         def build(kept: Path) -> None:
             if progress is not None:
                 progress(0, 0)
             compile_model(self.tool, {
-                "machine.v": self.verilog or machine_verilog(configuration),
-                "main.cpp": main, "machine_constants.h": constants}, kept)
+                "machine.v": self.verilog or machine_verilog(configuration), **texts}, kept)
 
         folder, fresh = cached(key, build)
         return folder / "machine", fresh

@@ -1,4 +1,4 @@
-// Host and screen of a Cardcage machine, compiled with its Verilated model.
+// Host and screen of a Cardcage machine, whichever model it is linked with.
 //
 // usage: machine RESULTS expected-responses memory-seed stall-seed maximum-cycles
 //                [cycle command]...
@@ -14,6 +14,7 @@
 //
 // With the single argument "bare" and a number of cycles it only toggles the clock.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -22,14 +23,10 @@
 #include <memory>
 #include <vector>
 
-#include "Vmachine.h"
-#include "verilated.h"
+#include "verilator_model.h"
 
-// What Python knows of the machine, its words and the results; model_constants.py writes it.
-#include "machine_constants.h"
-
-// Verilator writes the second underscore of a port's name as its code.
-#define PORT(interface, member) interface##___05F##member
+// What Python knows of the words and the results; model_constants.py writes it.
+#include "model_constants.h"
 
 namespace {
 
@@ -67,12 +64,14 @@ class Pace {
 // Puts pictures together from the video pins, as a screen would.
 class Monitor {
   public:
-    explicit Monitor(FILE* results) : results_(results) { pixels_.reserve(3 * WIDTH * HEIGHT); }
+    Monitor(FILE* results, const MachineNumbers& machine) : results_(results), machine_(machine) {
+        pixels_.reserve(scan_bytes());
+    }
 
     // False, with a reason, when the video is malformed.
     bool sample(uint64_t cycle, bool active, bool vertical_sync, uint8_t red, uint8_t green,
                 uint8_t blue) {
-        const bool in_sync = vertical_sync == VERTICAL_SYNC_POSITIVE;
+        const bool in_sync = vertical_sync == machine_.vertical_sync_positive;
         if (in_sync && !in_sync_ && !finish()) return false;
         in_sync_ = in_sync;
         if (active) {
@@ -83,7 +82,7 @@ class Monitor {
             ++line_pixels_;
             return true;
         }
-        if (line_pixels_ && line_pixels_ != WIDTH) return fail("a line of the wrong length");
+        if (line_pixels_ && line_pixels_ != machine_.width) return fail("a line of the wrong length");
         line_pixels_ = 0;
         if (red | green | blue) return fail("colour during blanking");
         return true;
@@ -98,10 +97,11 @@ class Monitor {
     const char* failure() const { return failure_; }
 
   private:
+    size_t scan_bytes() const { return size_t{3} * machine_.width * machine_.height; }
     bool fail(const char* why) { failure_ = why; return false; }
     bool finish() {
         if (synchronised_) {
-            if (pixels_.size() != 3ull * WIDTH * HEIGHT) return fail("a scan of the wrong size");
+            if (pixels_.size() != scan_bytes()) return fail("a scan of the wrong size");
             std::fputc(RecordKind::SCAN, results_);
             std::fwrite(&first_cycle_, sizeof first_cycle_, 1, results_);
             std::fwrite(pixels_.data(), 1, pixels_.size(), results_);
@@ -113,20 +113,23 @@ class Monitor {
         return true;
     }
     FILE* results_;
+    const MachineNumbers& machine_;
     std::vector<uint8_t> pixels_;
     uint64_t line_pixels_ = 0, first_cycle_ = 0, last_scan_cycle_ = 0, scans_ = 0;
     bool synchronised_ = false, in_sync_ = false;
     const char* failure_ = "";
 };
 
-#if OBSERVED_ELEMENTS
 // Counts what each processing element does, in buckets that double while the record grows.
 class Watch {
   public:
-    explicit Watch(FILE* results) : results_(results) {}
+    Watch(FILE* results, const Model& model)
+        : results_(results), model_(model), elements_(model.numbers.observed_elements),
+          counts_(size_t{BUCKETS} * elements_ * KINDS) {}
 
     // An opcode is taken and a response given in this clock, unless 0.
-    void clock(uint64_t cycle, const Vmachine& machine, uint8_t opcode, uint8_t response) {
+    void clock(uint64_t cycle, uint8_t opcode, uint8_t response) {
+        if (!elements_) return;
         if (opcode == Opcode::READ_COUNTERS) {
             end();
         } else if (!watching_ && DRAWING_OPCODES >> opcode & 1) {
@@ -134,34 +137,27 @@ class Watch {
             begin_ = cycle;
             clocks_ = 0;
             width_ = 1;
-            std::memset(counts_, 0, sizeof counts_);
+            std::fill(counts_.begin(), counts_.end(), 0);
         }
         if (!watching_) return;
         if (clocks_ == BUCKETS * width_) halve();
-        auto& bucket = counts_[clocks_++ / width_];
-        for (unsigned element = 0; element < OBSERVED_ELEMENTS; ++element)
-            ++bucket[element][field(machine.activity, element * ACTIVITY_BITS)];
+        uint32_t* bucket = &counts_[clocks_++ / width_ * elements_ * KINDS];
+        for (unsigned bit = 0; bit < elements_ * ACTIVITY_BITS; bit += ACTIVITY_BITS, bucket += KINDS)
+            ++bucket[model_.activity[bit / 8] >> bit % 8 & (KINDS - 1)];
         if (response == ResponseKind::FRAME_DRAWN) end();
     }
 
   private:
     static constexpr unsigned KINDS = 1 << ACTIVITY_BITS;
+    static_assert(8 % ACTIVITY_BITS == 0, "no field crosses a byte");
 
-    template <typename Word> static unsigned field(const Word& word, unsigned bit) {
-        return static_cast<unsigned>(word >> bit) & (KINDS - 1);
-    }
-    template <std::size_t Words>
-    static unsigned field(const VlWide<Words>& word, unsigned bit) {
-        return word.at(bit / 32) >> bit % 32 & (KINDS - 1);  // no field crosses a word
-    }
     void halve() {
-        uint32_t* const counts = &counts_[0][0][0];
-        constexpr unsigned SIZE = OBSERVED_ELEMENTS * KINDS;
-        for (unsigned bucket = 0; bucket < BUCKETS; ++bucket)
-            for (unsigned place = 0; place < SIZE; ++place) {
-                const uint32_t count = counts[bucket * SIZE + place];
-                counts[bucket * SIZE + place] = 0;
-                counts[bucket / 2 * SIZE + place] += count;
+        const size_t size = size_t{elements_} * KINDS;
+        for (size_t bucket = 0; bucket < BUCKETS; ++bucket)
+            for (size_t place = 0; place < size; ++place) {
+                const uint32_t count = counts_[bucket * size + place];
+                counts_[bucket * size + place] = 0;
+                counts_[bucket / 2 * size + place] += count;
             }
         width_ *= 2;
     }
@@ -172,56 +168,48 @@ class Watch {
         std::fputc(RecordKind::ACTIVITY, results_);
         for (const uint64_t value : {begin_, clocks_, width_, buckets})
             std::fwrite(&value, sizeof value, 1, results_);
-        std::fwrite(counts_, sizeof counts_[0], buckets, results_);
+        std::fwrite(counts_.data(), sizeof counts_[0] * elements_ * KINDS, buckets, results_);
     }
     FILE* results_;
+    const Model& model_;
+    const unsigned elements_;
     bool watching_ = false;
     uint64_t begin_ = 0, clocks_ = 0, width_ = 1;
-    uint32_t counts_[BUCKETS][OBSERVED_ELEMENTS][KINDS];
+    std::vector<uint32_t> counts_;
 };
-#else
-class Watch {
-  public:
-    explicit Watch(FILE*) {}
-    void clock(uint64_t, const Vmachine&, uint8_t, uint8_t) {}
-};
-#endif
 
 // The host's commands, one after another as they come; all are kept only for a host that may have
 // to go back.
 class Commands {
   public:
-    explicit Commands(bool goes_back) : goes_back_(goes_back) {}
+    Commands(unsigned size, bool goes_back) : size_(size), goes_back_(goes_back) {}
 
     // The words of a command: of the next one, of an earlier one where the host goes back; null
     // after the last one.
     const uint32_t* words(uint64_t number) {
         while (number >= read_) {
             const size_t place = goes_back_ ? words_.size() : 0;
-            words_.resize(place + COMMAND_WORDS);
-            if (std::fread(&words_[place], 4, COMMAND_WORDS, stdin) != COMMAND_WORDS) {
+            words_.resize(place + size_);
+            if (std::fread(&words_[place], 4, size_, stdin) != size_) {
                 words_.resize(place);
                 return nullptr;
             }
             ++read_;
         }
-        return &words_[goes_back_ ? number * COMMAND_WORDS : 0];
+        return &words_[goes_back_ ? number * size_ : 0];
     }
 
   private:
+    const size_t size_;
     const bool goes_back_;
     std::vector<uint32_t> words_;
     uint64_t read_ = 0;
 };
 
-int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
+int bare(Model& model, uint64_t cycles) {
+    model.settle();
     const auto began = std::chrono::steady_clock::now();
-    for (uint64_t cycle = 0; cycle < cycles; ++cycle) {
-        machine.clk = 0;
-        machine.eval();
-        machine.clk = 1;
-        machine.eval();
-    }
+    for (uint64_t cycle = 0; cycle < cycles; ++cycle) model.clock();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
     std::printf("%f\n", seconds.count());
     return 0;
@@ -230,18 +218,12 @@ int bare(VerilatedContext& context, Vmachine& machine, uint64_t cycles) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    VerilatedContext context;
     const bool is_bare = argc == 3 && !std::strcmp(argv[1], "bare");
     if (!is_bare && (argc < 6 || argc % 2 == 1)) { std::fprintf(stderr, "wrong arguments\n"); return 2; }
     const int64_t memory_seed = is_bare ? -1 : std::atoll(argv[3]);
-    if (memory_seed >= 0) {
-        context.randReset(2);
-        context.randSeed(static_cast<int>(memory_seed % 0x7fffffff) + 1);
-    }
-    const auto owner = std::make_unique<Vmachine>(&context);
-    Vmachine& machine = *owner;
-    machine.rst = 0;
-    if (is_bare) return bare(context, machine, std::strtoull(argv[2], nullptr, 10));
+    const std::unique_ptr<Model> owner = make_model(memory_seed);
+    Model& model = *owner;
+    if (is_bare) return bare(model, std::strtoull(argv[2], nullptr, 10));
 
     FILE* results = std::fopen(argv[1], "wb");
     if (!results) { std::perror(argv[1]); return 2; }
@@ -257,10 +239,10 @@ int main(int argc, char** argv) {
     auto reset = resets.begin();
 
     Pace send(stall_seed, 0), receive(stall_seed, 1);
-    Monitor monitor(results);
-    const auto watch = std::make_unique<Watch>(results);
+    Monitor monitor(results, model.numbers);
+    Watch watch(results, model);
     std::vector<uint64_t> accepted;
-    Commands commands(!resets.empty());
+    Commands commands(model.numbers.command_words, !resets.empty());
     const uint32_t* words = nullptr;  // of the command after the one that is offered
     bool offers = false;
     uint8_t opcode = 0;
@@ -272,31 +254,34 @@ int main(int argc, char** argv) {
     const auto next_command = [&] {
         offers = words;
         if (!offers) { send.stop(); return; }
-        std::memcpy(&machine.PORT(commands, payload), words, 4 * COMMAND_WORDS);
+        std::memcpy(model.commands_payload, words, 4 * model.numbers.command_words);
         opcode = *words & OPCODE_MASK;
         words = commands.words(sent + 1);
         send.go();
     };
+    bool resetting = false;  // at the next clock edge
+    const auto set_inputs = [&] {
+        resetting = reset != resets.end() && reset->cycle == cycle + 1;
+        *model.rst = resetting;
+        *model.commands_valid = send.high();
+        *model.responses_ready = receive.high();
+    };
     words = commands.words(0);
     next_command();
     receive.go();
+    set_inputs();
+    model.settle();
     while (maximum == 0 || cycle <= maximum) {
-        const bool resetting = reset != resets.end() && reset->cycle == cycle + 1;
-        machine.clk = 0;
-        machine.rst = resetting;
-        machine.PORT(commands, valid) = send.high();
-        machine.PORT(responses, ready) = receive.high();
-        machine.eval();
-        // What the clock edge will take, and what it shows now.
-        const bool taken = send.high() && machine.PORT(commands, ready);
-        const bool given = receive.high() && machine.PORT(responses, valid);
-        const uint64_t response = machine.PORT(responses, payload);
+        // What the next clock edge will take, and what the machine shows until then.
+        const bool taken = send.high() && *model.commands_ready;
+        const bool given = receive.high() && *model.responses_valid;
+        const uint64_t response = *model.responses_payload;
         ++cycle;
-        watch->clock(cycle, machine, taken ? opcode : 0, given ? response & KIND_MASK : 0);
+        watch.clock(cycle, taken ? opcode : 0, given ? response & KIND_MASK : 0);
         bool finished = false;
-        if (machine.PORT(pins, pixel)) {
-            if (!monitor.sample(cycle, machine.PORT(pins, active), machine.PORT(pins, vertical_sync),
-                                machine.PORT(pins, red), machine.PORT(pins, green), machine.PORT(pins, blue))) {
+        if (*model.pixel) {
+            if (!monitor.sample(cycle, *model.active, *model.vertical_sync, *model.red, *model.green,
+                                *model.blue)) {
                 why = End::VIDEO;
                 reason = monitor.failure();
                 break;
@@ -304,8 +289,7 @@ int main(int argc, char** argv) {
             finished = reset == resets.end() && (taken ? !words : !offers)
                        && received + given >= expected && (!shown || monitor.shown_since(shown_cycle));
         }
-        machine.clk = 1;
-        machine.eval();
+        // What the machine gets after that edge.
         if (taken) { accepted.push_back(cycle); ++sent; next_command(); } else send.wait();
         if (given) {
             const uint8_t kind = response & KIND_MASK;
@@ -326,6 +310,8 @@ int main(int argc, char** argv) {
             words = commands.words(sent);
             next_command();
         }
+        set_inputs();
+        model.clock();
         if (cycle % PROGRESS_CYCLES == 0) {
             std::printf("%llu %llu\n", static_cast<unsigned long long>(cycle),
                         static_cast<unsigned long long>(received));
@@ -343,6 +329,6 @@ int main(int argc, char** argv) {
     std::fputs(reason, results);
     const bool failed = std::ferror(results);
     if (std::fclose(results) || failed) { std::perror(argv[1]); return 2; }  // a full disk
-    machine.final();
+    model.finish();
     return 0;
 }

@@ -48,7 +48,7 @@ def sources_hash(*folders: str) -> str:
     ``"testbenches/export"``, wherever in them it lies."""
     package = Path(__file__).parent.parent.parent
     sources = sorted(path for folder in folders
-                     for ending in ("*.py", "*.cpp", "*.json")
+                     for ending in ("*.py", "*.cpp", "*.h", "*.json")
                      for path in (package / folder).rglob(ending))
     assert sources, folders
     return content_hash(path.read_text("utf-8") for path in sources)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +12,7 @@ from cardcage.golden.specification.configuration import MachineConfiguration
 from cardcage.testbenches.engines import compiled_model
 from cardcage.testbenches.engines.compiled_model import compile_model
 from cardcage.testbenches.engines.model_runtime import headers, include
+from cardcage.testbenches.engines.model_wrapper import machine_numbers, model_wrapper
 from cardcage.testbenches.engines.verilator_tool import (
     ToolMissingError,
     VerilatorTool,
@@ -38,6 +40,8 @@ class Recorder(VerilatorTool):
 
     def translate(self, arguments, folder):
         super().translate(arguments, folder)
+        assert not [path for path in folder.glob("*.cpp") if "ico_sequent" in path.read_text()], (
+            "logic behind the model's inputs is evaluated at both edges of the clock")
         self.translated.append(sum(path.stat().st_size for path in folder.glob("*.cpp")
                                    if not path.stem.endswith("Slow")))
 
@@ -63,7 +67,9 @@ def tool(tmp_path, monkeypatch):
 def build(tool, folder, cards):
     configuration = MachineConfiguration(cards=cards, width=32, height=32, clocks_per_pixel=2)
     folder.mkdir()
-    compile_model(tool, {"machine.v": machine_verilog(configuration)}, folder)
+    compile_model(tool, {"machine.v": machine_verilog(configuration),
+                         "model.v": model_wrapper(configuration),
+                         "machine_numbers.h": machine_numbers(configuration)}, folder)
     assert [path.name for path in folder.iterdir()] == ["machine"]
 
 
@@ -79,10 +85,11 @@ def test_pieces_that_elements_have_in_common_are_written_once(tool, tmp_path, mo
 def test_what_models_have_in_common_is_compiled_once(tool, tmp_path):
     for number in range(2):
         build(tool, tmp_path / str(number), "PM")
-    for common, wanted in (("verilated.cpp", 1), ("verilated.h", len(headers(tool)) > len(
-            include(tool)))):  # headers where the compiler can keep them
+    keeps_headers = len(headers(tool)) > len(include(tool))  # where the compiler can
+    for common, wanted in (("verilated.cpp", 1), ("verilator_main.cpp", 1),
+                           ("verilated.h", keeps_headers)):
         assert len([unit for unit in tool.compiled
-                    if any(part.endswith(f"/{common}") for part in unit)]) == wanted, common
+                    if any(Path(part).name == common for part in unit)]) == wanted, common
     links = [unit for unit in tool.compiled if "../machine" in unit]
     assert len(links) == 2
     assert links[0] == links[1]

@@ -24,8 +24,9 @@ from cardcage.golden.specification.commands import Opcode, ResponseKind
 from cardcage.golden.specification.errors import InputError
 from cardcage.testbenches.command_line.cli import main
 from cardcage.testbenches.engines import choose_engine as engines
-from cardcage.testbenches.engines import verilator_engine
+from cardcage.testbenches.engines import model_runtime, verilator_engine
 from cardcage.testbenches.engines.engine import Reset
+from cardcage.testbenches.engines.model_constants import model_constants
 from cardcage.testbenches.engines.pysim_engine import PysimEngine
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
 from cardcage.testbenches.engines.verilator_tool import ToolMissingError, find_verilator
@@ -140,7 +141,7 @@ def test_a_model_is_built_once(engine, cache):
 
 def test_the_main_program_is_told_every_code(monkeypatch):
     """Those of commands and responses; where any changes the model is built anew."""
-    header = verilator_engine.machine_constants(CONFIGURATION)
+    header = model_constants()
     for name, codes in (("Opcode", Opcode), ("ResponseKind", ResponseKind)):
         [listed] = re.findall(rf"namespace {name} {{(.*?)}}", header, re.DOTALL)
         found = re.findall(r"constexpr uint8_t (\w+) = (\d+);", listed)
@@ -150,7 +151,7 @@ def test_the_main_program_is_told_every_code(monkeypatch):
     monkeypatch.setattr(verilator_engine, "cached", lambda key, build: (
         keys.append(key) or (Path(), False)))
     VerilatorEngine().build(CONFIGURATION)
-    monkeypatch.setattr(verilator_engine, "machine_constants", lambda configuration: header
+    monkeypatch.setattr(model_runtime, "model_constants", lambda: header
                         .replace("FRAME_DRAWN = 5", "FRAME_DRAWN = 15"))
     VerilatorEngine().build(CONFIGURATION)
     assert len(set(keys)) == 2
