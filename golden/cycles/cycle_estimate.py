@@ -40,7 +40,7 @@ from ..specification.sampling_grid import Grid
 from .element_latencies import PIPELINE
 from .element_spans import lattice_spans
 from .node_work import share_of_node
-from .one_port.one_port_lanes import scan_share
+from .one_port.scan_reads import scan_share
 from .regions.region_spans import region_spans
 from .row_clocks import walks
 

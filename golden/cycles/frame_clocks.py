@@ -14,7 +14,7 @@ from ..specification.display_list import DisplayList
 from .broadcast import SetupTiming
 from .cycle_estimate import estimate_cycles
 from .merge_clocks import predict_merge
-from .one_port.one_port_lanes import scan_share
+from .one_port.scan_reads import scan_share
 
 #: Clocks in which a processing element surveys a unit of its own, and finds that one is not.
 SURVEYED_UNIT = 8

@@ -30,7 +30,7 @@ from ..merging.tree import TreeSend
 from ..organisations.organisation_of import organisation_of
 from ..specification.configuration import MachineConfiguration
 from ..specification.queues import FRAGMENTS_WAITING
-from .one_port.one_port_lanes import lane_of, shown_scan_shares
+from .one_port.scan_reads import lane_of, shown_scan_shares
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]

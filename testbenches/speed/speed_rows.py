@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from ...golden.balancing.region_counts import utilisation
 from ...golden.cycles.cycle_model import CyclePrediction, predict_cycles
-from ...golden.cycles.one_port.one_port_lanes import clocks_per_row, scan_shares
+from ...golden.cycles.one_port.scan_reads import clocks_per_row, scan_shares
 from ...golden.organisations.organisation_of import organisation_of
 from ...golden.specification.configuration import RANGES, MachineConfiguration
 from ..engines.engine import Engine

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...organisations.organisation_of import organisation_of
 from ...specification.configuration import MachineConfiguration
-from ..one_port.one_port_lanes import scan_share
+from ..one_port.scan_reads import scan_share
 
 #: Clocks by which what the cycle model of units does in a clock is later in the machine than the
 #: announcement of a fetch from which the scan's read is one clock.

@@ -12,7 +12,7 @@ from ...reference.exact import draw
 from ...specification.configuration import MachineConfiguration
 from ...specification.display_list import DisplayList
 from ...specification.queues import FRAGMENTS_WAITING
-from ..one_port.one_port_lanes import scan_share
+from ..one_port.scan_reads import scan_share
 from .element_streams import ElementStreams
 from .scan_slots import slots_from
 

@@ -15,9 +15,10 @@ import numpy as np
 from ...organisations.organisation import Organisation
 from ..element_latencies import NEVER, Drawn, Pipeline
 from ..row_clocks import Entries, WalkedSpans
-from .free_clocks import ScannedLanes, lane_slots
-from .one_port_lanes import ElementLanes, SpanAccesses, scan_shares
+from .one_port_lanes import ElementLanes, SpanAccesses
 from .port_accesses import PortAccesses
+from .scan_reads import lane_slots, scan_shares
+from .scanned_lanes import ScannedLanes
 
 #: What leaves the walker for a triangle, each with its ``Entries.offset``; None where it is no span
 #: but only the triangle's end.

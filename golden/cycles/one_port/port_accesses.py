@@ -15,7 +15,7 @@ from ...organisations.organisation import Organisation
 from ...reference.coverage import Triangles
 from ...reference.exact import draw, fragments
 from ...specification.display_list import DisplayList
-from .one_port_lanes import lane_of, scan_share
+from .scan_reads import lane_of, scan_share
 
 Float64 = NDArray[np.float64]
 Int64 = NDArray[np.int64]

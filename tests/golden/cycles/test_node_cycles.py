@@ -16,7 +16,7 @@ from cardcage.golden.cycles.broadcast import LIST_LATENCY, SetupTiming
 from cardcage.golden.cycles.cycle_estimate import estimate_cycles
 from cardcage.golden.cycles.cycle_model import predict_cycles
 from cardcage.golden.cycles.element_latencies import Pipeline
-from cardcage.golden.cycles.one_port.one_port_lanes import scan_share, scan_shares
+from cardcage.golden.cycles.one_port.scan_reads import scan_share, scan_shares
 from cardcage.golden.organisations.organisation_of import organisation_of
 
 CAGES = ("2x(PMC)", "3x(PMMT)", "2x(PMMPMMC)", "PMPMMMC PMMPMMC")

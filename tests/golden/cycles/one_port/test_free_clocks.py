@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cardcage.golden.cycles.one_port.free_clocks import FreeClocks, lane_slots
-from cardcage.golden.cycles.one_port.one_port_lanes import scan_shares, shown_scan_shares
+from cardcage.golden.cycles.one_port.free_clocks import FreeClocks
+from cardcage.golden.cycles.one_port.scan_reads import lane_slots, scan_shares, shown_scan_shares
 from cardcage.golden.organisations.organisation_of import organisation_of
 from cardcage.golden.specification.configuration import MachineConfiguration
 

@@ -11,8 +11,9 @@ from wide_machines import wide_machine
 
 from cardcage.golden.cycles.element_latencies import Pipeline
 from cardcage.golden.cycles.one_port.one_port_element import OnePort
-from cardcage.golden.cycles.one_port.one_port_lanes import LANE_START, ElementLanes, scan_shares
+from cardcage.golden.cycles.one_port.one_port_lanes import LANE_START, ElementLanes
 from cardcage.golden.cycles.one_port.port_accesses import PortAccesses
+from cardcage.golden.cycles.one_port.scan_reads import scan_shares
 from cardcage.golden.cycles.row_clocks import entries_of
 from cardcage.golden.cycles.two_port_element import TwoPorts
 from cardcage.golden.organisations.organisation_of import organisation_of
