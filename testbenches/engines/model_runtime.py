@@ -28,8 +28,7 @@ _RUNTIME = ["-O2", "-std=c++17"]
 _PARTS = ["verilated", "verilated_threads"]
 _HEADER = "verilated_before.h"
 
-_MAIN = ["verilator_main.cpp", "verilator_model.h"]
-_CONSTANTS = "model_constants.h"
+_MAIN = "verilator_main.cpp"
 
 
 def engine_text(name: str) -> str:
@@ -39,7 +38,7 @@ def engine_text(name: str) -> str:
 
 def recipe() -> list[str]:
     """All that a model depends on besides its texts and the tool."""
-    return [*OFTEN, ONCE, *_RUNTIME, model_constants(), *map(engine_text, _MAIN)]
+    return [*OFTEN, ONCE, *_RUNTIME, *_main_texts().values()]
 
 
 def include(tool: VerilatorTool) -> list[str]:
@@ -63,17 +62,23 @@ def runtime(tool: VerilatorTool) -> list[str]:
 def main_program(tool: VerilatorTool) -> str:
     """The object of the main program, which drives whatever model it is linked with; compiled where
     it is not kept."""
-    texts = {name: engine_text(name) for name in _MAIN} | {_CONSTANTS: model_constants()}
+    texts = _main_texts()
 
     def build(folder: Path) -> None:
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
-        tool.compile([[*_RUNTIME, "-c", _MAIN[0], "-o", "main.o"]], folder)
+        tool.compile([[*_RUNTIME, "-c", _MAIN, "-o", "main.o"]], folder)
         check_made(tool, folder, ["main.o"])
 
     folder, _ = cached(content_hash(["main program", *tool.versions(), *_RUNTIME, *texts.values()]),
                        build)
     return str(folder / "main.o")
+
+
+def _main_texts() -> dict[str, str]:
+    """The main program and what it includes, by name."""
+    return {_MAIN: engine_text(_MAIN), "verilator_model.h": engine_text("verilator_model.h"),
+            "model_constants.h": model_constants()}
 
 
 def headers(tool: VerilatorTool) -> list[str]:

@@ -34,8 +34,9 @@ def model_wrapper(configuration: MachineConfiguration) -> str:
     """
     inputs = {"rst": 1, "commands__valid": 1, "responses__ready": 1,
               "commands__payload": WORD_BITS * command_words(configuration)}
-    outputs = _OUTPUTS | {"activity": ACTIVITY_BITS * _observed(configuration) or 1}
-    wired = [name for name in outputs if name != "activity" or configuration.observe]
+    elements = _observed(configuration)
+    wired = _OUTPUTS | ({"activity": ACTIVITY_BITS * elements} if elements else {})
+    outputs = {"activity": 1} | wired
     ports = ["  input clk",
              *(f"  input [{width - 1}:0] {name}" for name, width in inputs.items()),
              *(f"  output [{width - 1}:0] {name}" for name, width in outputs.items())]

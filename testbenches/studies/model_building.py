@@ -1,7 +1,7 @@
 """What it costs to compile machines: ``python -m testbenches.studies.model_building``.
 
 Compiles each machine with an empty cache of its own, the first one twice, so that it is seen what
-Verilator's runtime costs once on a computer.
+Verilator's runtime and the main program cost once on a computer.
 """
 
 from __future__ import annotations

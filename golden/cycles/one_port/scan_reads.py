@@ -65,12 +65,10 @@ def lane_slots(organisation: Organisation) -> Bool:
     tile, group = organisation.scan_tile, organisation.scan_group
     rows, columns = tile.shape
     width = organisation.resolution.width
-    first = np.arange(0, width, group)
     slots = np.zeros((rows, width, len(organisation.domains) + 1, 2), bool)  # the last: orphans
     y, x = np.mgrid[:rows, :width]
     unit = tile[y, x % columns]
-    # All units of a group read at its beginning.
-    begin = first[x // group]
+    begin = x - x % group  # all units of a group read at its beginning
     for node, owner in enumerate(organisation.owners):
         if organisation.is_scanned(node):
             slots[y, begin, owner[unit], lane_of(organisation.configuration, unit)] = True
