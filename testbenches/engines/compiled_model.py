@@ -45,13 +45,14 @@ NOT_INLINED = "`verilator_config\n" + "".join(
     f'no_inline -module "{name}"\n' for name in BOARDS)
 
 #: Sources beside those that Verilator writes.
-_PORTS = ["verilator_model.h", "verilator_model.cpp"]
+_PORTS = {"verilator_model.h": "verilator_model.h", "verilator_model.cpp": "verilator_model.cpp",
+          "clock.h": "whole_clock.h"}
 
 
 def recipe() -> list[str]:
     """All that a program depends on besides its texts and the tool."""
     return [*TRANSLATE, *model_runtime.recipe(), str(_UNIT_BYTES), NOT_INLINED,
-            *map(engine_text, _PORTS)]
+            *map(engine_text, _PORTS.values())]
 
 
 def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -> None:
@@ -64,7 +65,7 @@ def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -
     work = folder / "work"
     work.mkdir()
     for name, text in (*texts.items(), ("not_inlined.vlt", NOT_INLINED),
-                       *((name, engine_text(name)) for name in _PORTS)):
+                       *((name, engine_text(source)) for name, source in _PORTS.items())):
         (work / name).write_text(text, encoding="utf-8")
     tool.translate([*TRANSLATE, "--Mdir", ".", "not_inlined.vlt", "machine.v", "model.v"], work)
     sources = sorted(work.glob("*.cpp"), key=lambda path: -path.stat().st_size)

@@ -24,6 +24,8 @@ from ..export.verilog import machine_verilog
 from ..support.cache import cached, content_hash, sources_hash
 from .activity_record import KINDS, ActivityRecord
 from .compiled_model import compile_model, recipe
+from .domains import compile_domains
+from .domains.split_machine import split_machine
 from .engine import EngineRun, Job, Progress, Scan
 from .model_constants import End, RecordKind
 from .model_wrapper import machine_numbers, model_wrapper
@@ -77,11 +79,16 @@ class VerilatorEngine:
         texts = {"model.v": model_wrapper(configuration),
                  "machine_numbers.h": machine_numbers(configuration)}
         key = content_hash([self.verilog or origin(configuration), *texts.values(), *recipe(),
-                            *self.tool.versions(), platform.machine()])
+                            *compile_domains.recipe(), *self.tool.versions(), platform.machine()])
 
         def build(kept: Path) -> None:
             if progress is not None:
                 progress(0, 0)
+            if self.verilog is None and compile_domains.has_equal_domains(configuration):
+                split = split_machine(configuration)
+                if split is not None:
+                    compile_domains.compile_domains(self.tool, configuration, split, kept)
+                    return
             compile_model(self.tool, {
                 "machine.v": self.verilog or machine_verilog(configuration), **texts}, kept)
 

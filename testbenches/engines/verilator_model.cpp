@@ -2,19 +2,19 @@
 
 #include "verilator_model.h"
 
-#include "Vmodel.h"
+#include "clock.h"  // whole_clock.h or split_clock.h
 #include "machine_numbers.h"  // model_wrapper.py writes it
 
 namespace {
 
 // Verilator writes the second underscore of a port's name as its code.
-#define PORT(interface, member) machine_.interface##___05F##member
+#define PORT(interface, member) clocked_.machine.interface##___05F##member
 
 class CompiledModel final : public Model {
   public:
     explicit CompiledModel(int64_t memory_seed)
-        : Model(NUMBERS), context_(memory_seed), machine_(&context_) {
-        rst = &machine_.rst;
+        : Model(NUMBERS), context_(memory_seed), clocked_(context_) {
+        rst = &clocked_.machine.rst;
         commands_valid = &PORT(commands, valid);
         commands_payload = &PORT(commands, payload);
         commands_ready = &PORT(commands, ready);
@@ -27,16 +27,11 @@ class CompiledModel final : public Model {
         red = &PORT(pins, red);
         green = &PORT(pins, green);
         blue = &PORT(pins, blue);
-        activity = reinterpret_cast<const uint8_t*>(&machine_.activity);
+        activity = reinterpret_cast<const uint8_t*>(&clocked_.machine.activity);
     }
-    void settle() override { machine_.eval(); }
-    void clock() override {
-        machine_.clk = 0;
-        machine_.eval();
-        machine_.clk = 1;
-        machine_.eval();
-    }
-    void finish() override { machine_.final(); }
+    void settle() override { clocked_.settle(); }
+    void clock() override { clocked_.clock(); }
+    void finish() override { clocked_.machine.final(); }
 
   private:
     struct Context : VerilatedContext {
@@ -47,7 +42,7 @@ class CompiledModel final : public Model {
         }
     };
     Context context_;
-    Vmodel machine_;
+    Clocked clocked_;
 };
 
 }  // namespace

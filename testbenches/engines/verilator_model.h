@@ -14,8 +14,8 @@ struct MachineNumbers {
     unsigned observed_elements;  // 0 where the machine is not observed
 };
 
-// A machine and a register before each of its inputs (model_wrapper.py): what is written to an input
-// is what the machine gets after the next clock edge, and before the first one at once.
+// What is written to an input is what the machine gets after the next clock edge, and before the first
+// one at once.
 struct Model {
     virtual ~Model() = default;
     virtual void settle() = 0;  // once, before the first clock

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from amaranth.back import rtlil
 from amaranth.lib import wiring
 
-from .verilog import run_yosys
+from .yosys import run_yosys
 
 __all__ = ["Cells", "count_cells"]
 

