@@ -8,11 +8,13 @@ simulated as fast, for the one text of all domains stays in the processor's cach
 
 from __future__ import annotations
 
+import platform
 import shutil
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 
-from ....golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT
+from ....golden.specification.card_order import MEMORY_UNIT, PROCESSING_ELEMENT, domains
 from ....golden.specification.configuration import MachineConfiguration
 from ...support.cache import cached, content_hash, lookup, sources_hash
 from .. import model_runtime
@@ -32,14 +34,17 @@ from .core_module import Core
 from .core_texts import cores_text, step_text
 from .split_machine import SplitMachine, array_ports
 
-#: Machines of fewer elements are compiled soon enough in one piece, which is simulated up to a
-#: quarter faster while it fits into the processor's caches.
-_LEAST_ELEMENTS = 12
+#: Machines with fewer domains of one kind are compiled soon enough in one piece, which is simulated
+#: up to a quarter faster while it fits into the processor's caches.
+_LEAST_ALIKE = 12
+#: Each kind takes a translation and a compiler, all at the same time.
+_MOST_KINDS = 4
 
 _TRANSLATE = ["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "--no-timing",
               "-Wno-fatal", "-Wno-lint"]
 
-#: Words are copied, not named one by one.
+#: Ports that are arrays are copied in loops: with a line for each element the shell would cost more
+#: than the cores.
 _TRANSLATE_SHELL = [*_TRANSLATE, "--expand-limit", "2"]
 
 _SHELL_SOURCES = {"verilator_model.h": "verilator_model.h", "clock.h": "split_clock.h",
@@ -53,9 +58,15 @@ def recipe() -> list[str]:
 
 
 def has_equal_domains(configuration: MachineConfiguration) -> bool:
-    """So many that it is worth the while to look for them, and no cards but theirs."""
+    """Many alike and few others, and no cards but theirs.
+
+    Not where the machine sets up triangles itself: its controller is then larger than all domains,
+    and is cut in no less time than it is compiled in.
+    """
     others = set(configuration.cards) - {PROCESSING_ELEMENT, MEMORY_UNIT}
-    return configuration.processing_elements >= _LEAST_ELEMENTS and not others
+    alike = Counter(units for _, units in domains(configuration.cards))
+    return (not others and configuration.setup == "host" and len(alike) <= _MOST_KINDS
+            and max(alike.values(), default=0) >= _LEAST_ALIKE)
 
 
 def compile_domains(tool: VerilatorTool, configuration: MachineConfiguration, split: SplitMachine,
@@ -67,6 +78,7 @@ def compile_domains(tool: VerilatorTool, configuration: MachineConfiguration, sp
     work = folder / "work"
     work.mkdir()
     cores = {_core_name(tool, core): core for core in split.cores}
+    assert len(cores) == len(split.cores), "groups of other boards are the same"
     found = {name: lookup(_key(name)) for name in cores}
     missing = [name for name in cores if found[name] is None]
     shell = work / "shell"
@@ -106,8 +118,9 @@ def compile_domains(tool: VerilatorTool, configuration: MachineConfiguration, sp
 
 def _core_name(tool: VerilatorTool, core: Core) -> str:
     """Of its class: by all that its object depends on."""
-    return "Vcore_" + content_hash(["core", core.verilog, *_TRANSLATE, *OFTEN, ONCE,
-                                    step_text("core", ""), *tool.versions()])
+    return "Vcore_" + content_hash([core.verilog, *_TRANSLATE, *OFTEN, ONCE, *tool.versions(),
+                                    sources_hash("testbenches/engines/domains"),
+                                    platform.machine()])
 
 
 def _key(name: str) -> str:

@@ -13,10 +13,12 @@ def step_text(core: str, generated: str) -> str:
     ``core``  the class that Verilator made, in ``generated``.
 
     Verilator's ``eval`` looks for what has changed; here that is known: the inputs, then the clock.
-    Where its two functions for that have other names, ``eval`` has to do.
+    Where its two functions for that, or what they look at, have other names, ``eval`` has to do.
     """
     root, step = f"{core}___024root", f"\nvoid step_core({core}& core)"
-    if f"{root}___eval_ico(" not in generated or f"{root}___eval_nba(" not in generated:
+    needed = (f"{root}___eval_ico(", f"{root}___eval_nba(",
+              "__VicoTriggered[0", "__VnbaTriggered[0")
+    if not all(name in generated for name in needed):
         return f"""{step} {{
     core.clk = 0;
     core.eval();

@@ -60,17 +60,18 @@ def group_boards(netlist: str) -> GroupedMachine | None:
     boards = [cell for cell in machine.cells if cell.kind.removeprefix("\\") in BOARDS]
     used = _Used(machine, boards, modules)
     members: dict[tuple[str, ...], list[list[Cell]]] = {}
-    for group in _groups(boards):
-        members.setdefault(tuple(cell.kind for cell in group), []).append(group)
-    places = _Places(_groups(boards), used)
+    in_order = _groups(boards)
+    for cells in in_order:
+        members.setdefault(tuple(cell.kind for cell in cells), []).append(cells)
+    places = _Places(in_order, used)
     groups, instances = [], []
     for number, equal in enumerate(members.values()):
-        made = [_group(rf"\group_{number}", group, used, places) for group in equal]
-        name, text = rf"group_{number}", made[0][0]
-        if any(other != text for other, _ in made):
+        made = [_group(rf"\group_{number}", cells, used, places) for cells in equal]
+        if len({module for module, _ in made}) > 1:
             return None
-        groups.append(Group(name, text, len(equal)))
-        instances += [Cell(rf"\{name}", rf"\{groups[-1].at(place)}", connections)
+        group = Group(f"group_{number}", made[0][0], len(equal))
+        groups.append(group)
+        instances += [Cell(rf"\{group.name}", rf"\{group.at(place)}", connections)
                       for place, (_, connections) in enumerate(made)]
     text = machine.without(cell.name for cell in boards).removesuffix("end\n")
     others = [renumbered(module.text) for name, module in modules.items() if name != _MACHINE]
@@ -120,7 +121,10 @@ class _Places:
 
 
 class _Used:
-    """What of the boards' ports is of use, and how often each wire of the machine is used."""
+    """What of the boards' ports is of use, and how often each wire of the machine is used.
+
+    Takes from ``boards`` the connections that are of none, and gives them the constants of others.
+    """
 
     def __init__(self, machine: NetlistModule, boards: Sequence[Cell],
                  modules: Mapping[str, NetlistModule]) -> None:

@@ -7,10 +7,11 @@ sides of the cut.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from itertools import pairwise
 
 _TOKEN = re.compile(r"\{|\}|\[\d+(?::\d+)?\]|\S+")
+#: A port of a cell, and the signal that it is at.
+_CONNECTION = re.compile(r"^    connect (\S+) (.*)$", re.MULTILINE)
 _ATTRIBUTE = re.compile(r"^  attribute ")
 
 #: Ports of cells that drive what they are connected to.
@@ -21,38 +22,28 @@ def with_single_drivers(text: str) -> str:
     """A flat module of cells, the outputs of which are named in ``_DRIVING``, after ``opt_clean``:
     no cell uses a second name of a net, so those are left out.  Each port is driven whole."""
     text = re.sub(r"^  connect .*\n", "", text, flags=re.MULTILINE)
-    widths, borders = _wires(text), {}
-    for name, width in widths.items():
-        borders[name] = {0, width}
-
-    def note(port: str, signal: str) -> str:
+    widths = _wires(text)
+    borders = {name: {0, width} for name, width in widths.items()}
+    for port, signal in _CONNECTION.findall(text):
         if port in _DRIVING:
-            for chunk in _chunks(signal, widths):
-                if chunk[0] in borders:
-                    borders[chunk[0]] |= {chunk[2], chunk[1] + 1}
-        return signal
-
-    _rewrite(text, note)
+            for name, high, low in _chunks(signal, widths):
+                if name in borders:
+                    borders[name] |= {low, high + 1}
     cut = {name: sorted(ends) for name, ends in borders.items() if len(ends) > 2}
 
-    def pieces(port: str, signal: str) -> str:
-        said = [part for chunk in _chunks(signal, widths) for part in _pieces(chunk, cut, widths)]
-        return said[0] if len(said) == 1 else f"{{ {' '.join(said)} }}"
+    def pieces(found: re.Match[str]) -> str:
+        said = [part for chunk in _chunks(found[2], widths)
+                for part in _pieces(chunk, cut, widths)]
+        signal = said[0] if len(said) == 1 else f"{{ {' '.join(said)} }}"
+        return f"    connect {found[1]} {signal}"
 
-    return _declared(_rewrite(text, pieces), cut)
+    return _declared(_CONNECTION.sub(pieces, text), cut)
 
 
 def _wires(text: str) -> dict[str, int]:
     found = re.findall(r"^  wire (.*)$", text, re.MULTILINE)
     return {line.split()[-1]: int(width[1]) if (width := re.search(r"\bwidth (\d+)", line)) else 1
             for line in found}
-
-
-def _rewrite(text: str, change: Callable[[str, str], str]) -> str:
-    """Each signal as ``change`` makes it of the port that it is at."""
-    return re.sub(r"^    connect (\S+) (.*)$",
-                  lambda found: f"    connect {found[1]} {change(found[1], found[2])}", text,
-                  flags=re.MULTILINE)
 
 
 def _chunks(signal: str, widths: dict[str, int]) -> list[tuple[str, int, int]]:
