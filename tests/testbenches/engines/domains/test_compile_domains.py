@@ -91,7 +91,7 @@ def test_a_cage_of_known_domains_compiles_its_shell_alone(tmp_path, monkeypatch)
     found = find_verilator()
     tool = Counted(found.root, found.compiler)
     for number, (cards, kinds) in enumerate((
-            ("14x(PMM)PMPMMM", 4), ("PMPMMM14x(PMM)", 0), ("16x(PMM)", 0))):
+            ("PMMPMMPMPMMM", 4), ("PMPMMMPMMPMM", 0))):
         COMPILED.clear()
         configuration = MachineConfiguration(cards=cards, width=32, height=32)
         folder = tmp_path / str(number)

@@ -2,6 +2,7 @@
 
 import re
 from collections import Counter
+from functools import cache
 
 import pytest
 
@@ -11,14 +12,13 @@ from cardcage.testbenches.engines.domains.netlist_text import modules_of, names_
 from cardcage.testbenches.export.verilog import machine_netlist
 
 
-def grouped(cards, **options):
-    netlist, _ = machine_netlist(MachineConfiguration(
-        cards=cards, **{"width": 32, "height": 32} | options))
+@cache
+def grouped(cards):
+    netlist, _ = machine_netlist(MachineConfiguration(cards=cards, width=32, height=32))
     return group_boards(netlist)
 
 
 @pytest.mark.parametrize(("cards", "boards"), [
-    ("PMMPMMPMMPMM", {("processing_element", "memory_unit", "memory_unit"): 4}),
     ("PMPMMMPMPMMM", {("processing_element", "memory_unit"): 2,
                       ("processing_element", *["memory_unit"] * 3): 2}),
     ("PPPDMM", {("processing_element",): 3, ("direct_merge",): 1, ("memory_unit",): 2}),
@@ -34,7 +34,7 @@ def test_a_domain_is_an_element_and_its_units(cards, boards):
                    for place in range(group.count))
 
 
-@pytest.mark.parametrize("cards", ["PPPDMM", "PMMPMMPMMPMM"])
+@pytest.mark.parametrize("cards", ["PPPDMM", "PMPMMMPMPMMM"])
 def test_every_wire_of_the_machine_is_driven(cards):
     """Once, and not by a board that always puts out the same, as the card of a direct merge does:
     the lines that run to all read that, too."""
