@@ -1,9 +1,10 @@
 """From a machine that is cut into cores and a shell to a program: cores are kept, and compiled only
 where no machine had them before.
 
-Measured with 16x(PMM) at 128x128 (``python -m testbenches.studies.model_building``): a third of
-what the machine costs in one piece, and a third of that where the cores are there; and it is
-simulated as fast, for the one text of all domains stays in the processor's caches.
+Measured with 16x(PMM) at 128x128 (``python -m testbenches.studies.model_building``): a quarter of
+the processor time that it takes in one piece, a tenth where the cores are there; and it is simulated
+as fast, for the one text of all domains stays in the processor's caches.  With other cards it is
+simulated slower.
 """
 
 from __future__ import annotations
