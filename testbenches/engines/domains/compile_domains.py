@@ -2,8 +2,8 @@
 where no machine had them before.
 
 Measured with 16x(PMM) at 128x128 (``python -m testbenches.studies.model_building``): a quarter of
-the processor time that it takes in one piece, a tenth where the cores are there.  It is simulated as
-fast, for the one text of all domains stays in the processor's caches; with other cards slower.
+the processor time that it takes in one piece, a tenth where the cores are there.  It is simulated
+as fast, for the one text of all domains stays in the processor's caches; with other cards slower.
 """
 
 from __future__ import annotations
