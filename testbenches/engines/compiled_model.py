@@ -20,11 +20,12 @@ from . import model_runtime
 from .model_runtime import (
     OFTEN,
     ONCE,
+    TRANSLATION,
     check_made,
-    engine_text,
     headers,
     main_program,
     objects,
+    port_texts,
     runtime,
 )
 from .model_wrapper import TOP
@@ -34,9 +35,8 @@ from .verilator_tool import VerilatorTool
 #: that are the same.
 _PIECE = "200"
 
-TRANSLATE = ["--cc", "--top-module", TOP, "-O3", "--x-assign", "fast",
-             "--x-initial", "unique", "--no-timing", "-Wno-fatal", "-Wno-lint",
-             "--output-split", "8000", "--output-split-cfuncs", _PIECE]
+TRANSLATE = [*TRANSLATION, "--top-module", TOP, "--output-split", "8000",
+             "--output-split-cfuncs", _PIECE]
 
 #: Bytes of source text that are worth a compiler of their own.
 _UNIT_BYTES = 1 << 20
@@ -44,15 +44,14 @@ _UNIT_BYTES = 1 << 20
 NOT_INLINED = "`verilator_config\n" + "".join(
     f'no_inline -module "{name}"\n' for name in BOARDS)
 
-#: Sources beside those that Verilator writes.
-_PORTS = {"verilator_model.h": "verilator_model.h", "verilator_model.cpp": "verilator_model.cpp",
-          "clock.h": "whole_clock.h"}
+#: What a clock of the model is.
+_CLOCK = "whole_clock.h"
 
 
 def recipe() -> list[str]:
     """All that a program depends on besides its texts and the tool."""
     return [*TRANSLATE, *model_runtime.recipe(), str(_UNIT_BYTES), NOT_INLINED,
-            *map(engine_text, _PORTS.values())]
+            *port_texts(_CLOCK).values()]
 
 
 def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -> None:
@@ -64,8 +63,7 @@ def compile_model(tool: VerilatorTool, texts: Mapping[str, str], folder: Path) -
     """
     work = folder / "work"
     work.mkdir()
-    for name, text in (*texts.items(), ("not_inlined.vlt", NOT_INLINED),
-                       *((name, engine_text(source)) for name, source in _PORTS.items())):
+    for name, text in {**texts, **port_texts(_CLOCK), "not_inlined.vlt": NOT_INLINED}.items():
         (work / name).write_text(text, encoding="utf-8")
     tool.translate([*TRANSLATE, "--Mdir", ".", "not_inlined.vlt", "machine.v", "model.v"], work)
     sources = sorted(work.glob("*.cpp"), key=lambda path: -path.stat().st_size)

@@ -11,6 +11,10 @@ from ..support.cache import cached, content_hash
 from .model_constants import model_constants
 from .verilator_tool import ToolMissingError, VerilatorTool
 
+#: For Verilator, besides what it is to translate.
+TRANSLATION = ["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "--no-timing",
+             "-Wno-fatal", "-Wno-lint"]
+
 #: As fast as -O2 after what Verilator has done, in half the time.
 OFTEN = ["-O1", "-std=c++17"]
 
@@ -36,9 +40,17 @@ def engine_text(name: str) -> str:
     return (resources.files(__package__) / name).read_text("utf-8")
 
 
+def port_texts(clock: str) -> dict[str, str]:
+    """The sources between the main program and what Verilator writes, by name; ``clock`` is the
+    file that says what a clock is."""
+    sources = {"verilator_model.h": "verilator_model.h",
+               "verilator_model.cpp": "verilator_model.cpp", "clock.h": clock}
+    return {name: engine_text(source) for name, source in sources.items()}
+
+
 def recipe() -> list[str]:
     """All that a model depends on besides its texts and the tool."""
-    return [*OFTEN, ONCE, *_RUNTIME, *_main_texts().values()]
+    return [*TRANSLATION, *OFTEN, ONCE, *_RUNTIME, *_main_texts().values()]
 
 
 def include(tool: VerilatorTool) -> list[str]:

@@ -47,7 +47,7 @@ synth_ecp5 -nowidelut {options} -top {bench} -json netlist.json
 
 #: From so many LUT4s on, as in the crossbar of a direct merge of sixteen elements, the router never
 #: ends after nextpnr's usual placement.  It does after one that spreads all cells evenly and wants
-#: short wires, not short paths; an hour or two.
+#: short wires, not short paths; in half an hour.
 _CROWDED_LUT4S = 18_000
 _CROWDED = ("--placer", "static", "--router", "router2", "--no-tmdriv")
 

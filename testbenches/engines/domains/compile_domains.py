@@ -22,10 +22,11 @@ from .. import model_runtime
 from ..model_runtime import (
     OFTEN,
     ONCE,
+    TRANSLATION,
     check_made,
-    engine_text,
     headers,
     main_program,
+    port_texts,
     runtime,
 )
 from ..model_wrapper import TOP, machine_numbers, shell_wrapper
@@ -41,20 +42,17 @@ _LEAST_ALIKE = 12
 #: Each kind takes a translation and a compiler, all at the same time.
 _MOST_KINDS = 4
 
-_TRANSLATE = ["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "--no-timing",
-              "-Wno-fatal", "-Wno-lint"]
-
 #: Ports that are arrays are copied in loops: with a line for each element the shell would cost more
 #: than the cores.
-_TRANSLATE_SHELL = [*_TRANSLATE, "--expand-limit", "2"]
+_TRANSLATE_SHELL = [*TRANSLATION, "--expand-limit", "2"]
 
-_SHELL_SOURCES = {"verilator_model.h": "verilator_model.h", "clock.h": "split_clock.h",
-                  "verilator_model.cpp": "verilator_model.cpp"}
+#: What a clock of the model is.
+_CLOCK = "split_clock.h"
 
 
 def recipe() -> list[str]:
     """All that a program depends on besides its machine and the tool."""
-    return [*_TRANSLATE_SHELL, *model_runtime.recipe(), *map(engine_text, _SHELL_SOURCES.values()),
+    return [*_TRANSLATE_SHELL, *model_runtime.recipe(), *port_texts(_CLOCK).values(),
             sources_hash("testbenches/engines/domains")]
 
 
@@ -91,7 +89,7 @@ def compile_domains(tool: VerilatorTool, configuration: MachineConfiguration, sp
     tool.run([
         [str(tool.executable), *_TRANSLATE_SHELL, "--top-module", TOP, "--Mdir", "shell",
          "shell/machine.v", "shell/model.v"],
-        *([str(tool.executable), *_TRANSLATE, "--prefix", name, "--top-module", core_module.TOP,
+        *([str(tool.executable), *TRANSLATION, "--prefix", name, "--top-module", core_module.TOP,
            "--Mdir", name, f"{name}/core.v"] for name in missing)], work)
     for name in missing:
         _write_unit(work / name, step_text(name, _sources(work / name)))
@@ -119,7 +117,7 @@ def compile_domains(tool: VerilatorTool, configuration: MachineConfiguration, sp
 
 def _core_name(tool: VerilatorTool, core: Core) -> str:
     """Of its class: by all that its object depends on."""
-    return "Vcore_" + content_hash([core.verilog, *_TRANSLATE, *OFTEN, ONCE, *tool.versions(),
+    return "Vcore_" + content_hash([core.verilog, *TRANSLATION, *OFTEN, ONCE, *tool.versions(),
                                     sources_hash("testbenches/engines/domains"),
                                     platform.machine()])
 
@@ -134,8 +132,7 @@ def _write_shell(configuration: MachineConfiguration, split: SplitMachine,
     texts = {"machine.v": split.shell,
              "model.v": shell_wrapper(configuration, array_ports(split.cores)),
              "machine_numbers.h": machine_numbers(configuration), "cores.h": cores_text(cores)}
-    texts |= {name: engine_text(source) for name, source in _SHELL_SOURCES.items()}
-    for name, text in texts.items():
+    for name, text in (texts | port_texts(_CLOCK)).items():
         (folder / name).write_text(text, encoding="utf-8")
 
 
